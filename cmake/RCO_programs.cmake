@@ -1,0 +1,46 @@
+# How this project's own programs are built: warnings, sanitizers, tuning. Users of the library
+# get none of this.
+
+option(RCO_WERROR "Treat warnings in this project's own programs as errors" OFF)
+option(RCO_NATIVE "Compile the benchmarks for this machine's processor (-march=native)" OFF)
+option(RCO_TEST_ASSERTIONS
+  "Keep the assertions of CGAL, Eigen and this package in the tests, in Release too" OFF)
+set(RCO_SANITIZERS "" CACHE STRING
+  "Comma-separated sanitizers for this project's own programs, such as address,undefined")
+
+add_library(rco_settings INTERFACE)
+target_link_libraries(rco_settings INTERFACE
+  Reference_constrained_optimization::Reference_constrained_optimization)
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  target_compile_options(rco_settings INTERFACE -Wall -Wextra)
+  if(RCO_WERROR)
+    target_compile_options(rco_settings INTERFACE -Werror)
+  endif()
+  if(RCO_SANITIZERS)
+    target_compile_options(rco_settings INTERFACE
+      -fsanitize=${RCO_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+    target_link_options(rco_settings INTERFACE -fsanitize=${RCO_SANITIZERS})
+  endif()
+elseif(MSVC)
+  target_compile_options(rco_settings INTERFACE /W3)
+  if(RCO_WERROR)
+    target_compile_options(rco_settings INTERFACE /WX)
+  endif()
+endif()
+
+# rco_add_executable(<name>) builds <name>.cpp of the current folder. A source that is not there
+# yet is no error: the caller sees it by the target's absence.
+function(rco_add_executable name)
+  if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp")
+    message(STATUS "${name}: no source file yet, skipped")
+    return()
+  endif()
+  add_executable(${name} ${name}.cpp)
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  target_link_libraries(${name} PRIVATE rco_settings)
+  # the folder of CGAL's *.off files, and for CGAL::data_file_path() the folder above it
+  get_filename_component(cgal_data_dir "${RCO_DATA_DIR}" DIRECTORY)
+  target_compile_definitions(${name} PRIVATE
+    RCO_DATA_DIR="${RCO_DATA_DIR}"
+    CGAL_DATA_DIR="${cgal_data_dir}")
+endfunction()

@@ -1,0 +1,99 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_ENERGY_ELEMENT_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_ENERGY_ELEMENT_H
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * is one term of an energy: a triangle of three vertices of the mesh and its rest shape.
+ *
+ * The density is evaluated at the Jacobian of the affine map from the rest triangle to the
+ * triangle as it lies on the reference.
+ */
+struct Energy_element
+{
+  /// the three vertices, as positions within the face's cyclic list of vertices, oriented with it.
+  std::array<int, 3> corners{{0, 1, 2}};
+  /// the rest triangle: columns are the edge vectors from its first to its second and third vertex
+  /// (2x2, units of length of the mesh); the determinant must be positive.
+  Eigen::Matrix2d rest = Eigen::Matrix2d::Identity();
+};
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * shows an energy the meshes it is used on. Vertices and faces are named by their positions in
+ * `vertices(mesh)` and `faces(mesh)`.
+ */
+class Energy_context
+{
+public:
+  /// \cond SKIP_IN_MANUAL
+  Energy_context(const std::vector<int>& face_begin,
+                 const std::vector<int>& corner_vertex,
+                 std::size_t number_of_vertices,
+                 double mean_edge_length,
+                 double mesh_area,
+                 double reference_area)
+    : m_face_begin(face_begin),
+      m_corner_vertex(corner_vertex),
+      m_number_of_vertices(number_of_vertices),
+      m_mean_edge_length(mean_edge_length),
+      m_mesh_area(mesh_area),
+      m_reference_area(reference_area)
+  {}
+  /// \endcond
+
+  /// number of vertices of the mesh.
+  std::size_t number_of_vertices() const { return m_number_of_vertices; }
+  /// number of faces of the mesh.
+  std::size_t number_of_faces() const { return m_face_begin.size() - 1; }
+  /// number of vertices of face `f`.
+  int degree(std::size_t f) const { return m_face_begin[f + 1] - m_face_begin[f]; }
+  /// the `i`-th vertex of face `f`, with `i` in `[0, degree(f))`.
+  int vertex(std::size_t f, int i) const { return m_corner_vertex[m_face_begin[f] + i]; }
+  /// mean edge length of the input mesh.
+  double mean_edge_length() const { return m_mean_edge_length; }
+  /// area of the input mesh.
+  double mesh_area() const { return m_mesh_area; }
+  /// area of the reference.
+  double reference_area() const { return m_reference_area; }
+
+private:
+  const std::vector<int>& m_face_begin;
+  const std::vector<int>& m_corner_vertex;
+  std::size_t m_number_of_vertices;
+  double m_mean_edge_length;
+  double m_mesh_area;
+  double m_reference_area;
+};
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * returns the rest matrix of an equilateral triangle with the given edge length.
+ */
+inline Eigen::Matrix2d equilateral_rest_triangle(double edge_length)
+{
+  Eigen::Matrix2d rest;
+  rest << edge_length, 0.5 * edge_length, 0, 0.5 * std::sqrt(3.) * edge_length;
+  return rest;
+}
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_ENERGY_ELEMENT_H

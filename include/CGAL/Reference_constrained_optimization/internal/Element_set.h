@@ -1,0 +1,79 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ELEMENT_SET_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ELEMENT_SET_H
+
+#include <CGAL/Reference_constrained_optimization/Energy_element.h>
+#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// All elements of an energy on a mesh; the elements of a face are consecutive.
+class Element_set
+{
+public:
+  struct Element
+  {
+    std::array<int, 3> vertices;
+    Eigen::Matrix2d rest_inverse;
+  };
+
+  template <typename Energy>
+  Element_set(const Energy& energy, const Energy_context& context)
+  {
+    const std::size_t n = context.number_of_faces();
+    m_begin.reserve(n + 1);
+    m_begin.push_back(0);
+    std::vector<Energy_element> elements;
+    for(std::size_t f = 0; f < n; ++f)
+    {
+      elements.clear();
+      energy.append_elements(context, f, elements);
+      for(const Energy_element& e : elements)
+      {
+        const double det = e.rest.determinant();
+        if(!(det > 0) || !std::isfinite(det))
+          throw Invalid_input("energy: the rest triangle of an element of face " +
+                              std::to_string(f) + " does not have a positive area");
+        Element element;
+        for(int i = 0; i < 3; ++i)
+        {
+          if(e.corners[i] < 0 || e.corners[i] >= context.degree(f))
+            throw Invalid_input("energy: an element of face " + std::to_string(f) +
+                                " names a corner that the face does not have");
+          element.vertices[i] = context.vertex(f, e.corners[i]);
+        }
+        element.rest_inverse = e.rest.inverse();
+        m_elements.push_back(element);
+      }
+      m_begin.push_back(int(m_elements.size()));
+    }
+    if(m_elements.empty())
+      throw Invalid_input("energy: the mesh has no element");
+  }
+
+  int begin(int f) const { return m_begin[f]; }
+  int end(int f) const { return m_begin[f + 1]; }
+  const Element& operator[](int e) const { return m_elements[e]; }
+  int size() const { return int(m_elements.size()); }
+
+private:
+  std::vector<int> m_begin;
+  std::vector<Element> m_elements;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ELEMENT_SET_H

@@ -1,0 +1,134 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENED_MOVER_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENED_MOVER_H
+
+#include <CGAL/Reference_constrained_optimization/internal/mapping_back.h>
+#include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+inline double seconds_since(const std::chrono::steady_clock::time_point& start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// A mover proposes new positions of a patch's free vertices. It provides
+//   template <class Density> bool propose(const Patch&, const Density&);
+// which says whether there is anything to try, and
+//   bool place(const Patch&, int v, double t, Placed_vertex&);
+// which puts local vertex v at part t in (0, 1] of its way, and says whether it could.
+//
+// This one goes through the plane: flatten the patch, minimize there in the metric of the surface,
+// map back.
+class Flattened_mover
+{
+public:
+  struct Parameters
+  {
+    Flattening_parameters flattening;
+    bool use_surface_metric = true;
+    int newton_steps = 3;
+    bool check_overlap = true;
+  };
+
+  Flattened_mover(const Reference_surface& reference, const Parameters& parameters)
+    : m_reference(reference), m_parameters(parameters)
+  {}
+
+  template <typename Density>
+  bool propose(const Patch& patch, const Density& density)
+  {
+    const auto start = std::chrono::steady_clock::now();
+    const Indexed_mesh& triangles = patch.triangles();
+    m_points.clear();
+    for(const Placed_vertex& p : patch.placed)
+      m_points.push_back(p.position);
+    m_flattening = m_flattener.flatten(triangles, m_points, m_parameters.flattening);
+    const bool is_flat = m_flattening.path != Flattening_path::failed;
+    m_overlaps = is_flat && m_parameters.check_overlap &&
+                 !has_simple_border(triangles, m_flattening.positions);
+    m_flattening_time = seconds_since(start);
+    m_optimization_time = 0;
+    if(!is_flat)
+      return false;
+
+    const auto start_of_descent = std::chrono::steady_clock::now();
+    const std::vector<Vector_2>& u = m_flattening.positions;
+    set_up_problem(patch);
+    m_target = u;
+    const auto outcome = m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps,
+                                              1e-8);
+    m_start_triangle.assign(u.size(), -1);
+    for(int c = 0; c < triangles.number_of_corners(); ++c)
+      m_start_triangle[triangles.corner_vertex[c]] = c / 3;
+    m_optimization_time = seconds_since(start_of_descent);
+    return outcome.steps > 0;
+  }
+
+  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  {
+    const Vector_2& from = m_flattening.positions[v];
+    const Vector_2 to = from + t * (m_target[v] - from);
+    const Planar_location location =
+      walk(patch.triangles(), m_flattening.positions, to, m_start_triangle[v]);
+    return location.triangle >= 0 && map_to_reference(patch, location, m_reference, result);
+  }
+
+  const Flattening& flattening() const { return m_flattening; }
+  const std::vector<Vector_2>& target() const { return m_target; }
+  bool overlaps() const { return m_overlaps; }
+  double flattening_time() const { return m_flattening_time; }
+  double optimization_time() const { return m_optimization_time; }
+
+private:
+  void set_up_problem(const Patch& patch)
+  {
+    const std::vector<Vector_2>& u = m_flattening.positions;
+    m_problem.triples.clear();
+    m_problem.rest_inverse.clear();
+    m_problem.metric.clear();
+    m_problem.is_free = patch.is_free;
+    for(const Element_set::Element& e : patch.elements)
+    {
+      m_problem.triples.push_back(e.vertices);
+      m_problem.rest_inverse.push_back(e.rest_inverse);
+      if(!m_parameters.use_surface_metric)
+      {
+        m_problem.metric.push_back(Eigen::Matrix2d::Identity());
+        continue;
+      }
+      const Placed_vertex &a = patch.placed[e.vertices[0]], &b = patch.placed[e.vertices[1]],
+                          &c = patch.placed[e.vertices[2]];
+      m_problem.metric.push_back(surface_metric(
+        Planar_problem::edges(u, e.vertices),
+        signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
+    }
+  }
+
+  const Reference_surface& m_reference;
+  Parameters m_parameters;
+  Patch_flattener m_flattener;
+  Planar_optimizer m_optimizer;
+  Planar_problem m_problem;
+  Flattening m_flattening;
+  std::vector<Vector_3> m_points;
+  std::vector<Vector_2> m_target;
+  std::vector<int> m_start_triangle;
+  bool m_overlaps = false;
+  double m_flattening_time = 0, m_optimization_time = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENED_MOVER_H

@@ -1,0 +1,215 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INDEXED_MESH_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INDEXED_MESH_H
+
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+typedef Eigen::Vector2d Vector_2;
+typedef Eigen::Vector3d Vector_3;
+
+// A polygon mesh in plain arrays. A corner is a face's vertex and at the same time the half-edge
+// from it to the face's next vertex; the corners of a face are consecutive.
+class Indexed_mesh
+{
+public:
+  std::vector<int> face_begin;    // first corner of each face, and the number of corners at the end
+  std::vector<int> corner_vertex; // per corner
+  std::vector<int> corner_face;   // per corner
+  std::vector<int> opposite;      // per corner, -1 at the border
+  std::vector<int> vertex_begin;  // first entry of each vertex in vertex_corners
+  std::vector<int> vertex_corners; // corners at each vertex, ascending
+  std::vector<char> is_border_vertex;
+
+  Indexed_mesh() = default;
+
+  // faces are given by face_begin and corner_vertex; edges that are not manifold are refused
+  Indexed_mesh(std::vector<int> begins, std::vector<int> vertices, int number_of_vertices)
+    : face_begin(std::move(begins)), corner_vertex(std::move(vertices))
+  {
+    corner_face.resize(corner_vertex.size());
+    for(int f = 0; f < number_of_faces(); ++f)
+      for(int c = face_begin[f]; c < face_begin[f + 1]; ++c)
+        corner_face[c] = f;
+    collect_vertex_corners(number_of_vertices);
+    match_opposites();
+  }
+
+  int number_of_faces() const { return int(face_begin.size()) - 1; }
+  int number_of_vertices() const { return int(vertex_begin.size()) - 1; }
+  int number_of_corners() const { return int(corner_vertex.size()); }
+  int degree(int f) const { return face_begin[f + 1] - face_begin[f]; }
+
+  int next(int c) const
+  {
+    const int f = corner_face[c];
+    return c + 1 < face_begin[f + 1] ? c + 1 : face_begin[f];
+  }
+  int previous(int c) const
+  {
+    const int f = corner_face[c];
+    return c > face_begin[f] ? c - 1 : face_begin[f + 1] - 1;
+  }
+  int source(int c) const { return corner_vertex[c]; }
+  int target(int c) const { return corner_vertex[next(c)]; }
+
+  // the first vertex whose faces do not form one fan, or -1
+  int find_nonmanifold_vertex() const
+  {
+    for(int v = 0; v < number_of_vertices(); ++v)
+    {
+      const int degree = vertex_begin[v + 1] - vertex_begin[v];
+      if(degree == 0)
+        continue;
+      const int start = vertex_corners[vertex_begin[v]];
+      int count = 1, c = start;
+      bool closed = false;
+      for(int o = opposite[previous(c)]; o >= 0; o = opposite[previous(c)])
+      {
+        if(o == start)
+        {
+          closed = true;
+          break;
+        }
+        c = o;
+        if(++count > degree)
+          return v;
+      }
+      c = start;
+      while(!closed && opposite[c] >= 0)
+      {
+        c = next(opposite[c]);
+        if(++count > degree)
+          return v;
+      }
+      if(count != degree)
+        return v;
+    }
+    return -1;
+  }
+
+private:
+  void collect_vertex_corners(int number_of_vertices)
+  {
+    vertex_begin.assign(number_of_vertices + 1, 0);
+    for(const int v : corner_vertex)
+      ++vertex_begin[v + 1];
+    for(int v = 0; v < number_of_vertices; ++v)
+      vertex_begin[v + 1] += vertex_begin[v];
+    vertex_corners.resize(corner_vertex.size());
+    std::vector<int> cursor(vertex_begin.begin(), vertex_begin.end() - 1);
+    for(int c = 0; c < int(corner_vertex.size()); ++c)
+      vertex_corners[cursor[corner_vertex[c]]++] = c;
+  }
+
+  void match_opposites()
+  {
+    const int n = int(corner_vertex.size());
+    opposite.assign(n, -1);
+    is_border_vertex.assign(number_of_vertices(), 0);
+    for(int c = 0; c < n; ++c)
+    {
+      const int s = source(c), t = target(c);
+      if(s == t)
+        throw Invalid_input("face " + std::to_string(corner_face[c]) + " has an edge from vertex " +
+                            std::to_string(s) + " to itself");
+      int matches = 0, twins = 0;
+      for(int k = vertex_begin[t]; k < vertex_begin[t + 1]; ++k)
+        if(target(vertex_corners[k]) == s)
+        {
+          opposite[c] = vertex_corners[k];
+          ++matches;
+        }
+      for(int k = vertex_begin[s]; k < vertex_begin[s + 1]; ++k)
+        if(target(vertex_corners[k]) == t)
+          ++twins;
+      if(matches > 1 || twins > 1)
+        throw Invalid_input("the edge between vertices " + std::to_string(s) + " and " +
+                            std::to_string(t) + " (face " + std::to_string(corner_face[c]) +
+                            ") is not manifold");
+      if(matches == 0)
+        is_border_vertex[s] = is_border_vertex[t] = 1;
+    }
+  }
+};
+
+// vector area of a face: half the sum of the cross products around it
+inline Vector_3 face_vector_area(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+{
+  const int begin = mesh.face_begin[f], degree = mesh.degree(f);
+  const Vector_3& o = points[mesh.corner_vertex[begin]];
+  Vector_3 sum = Vector_3::Zero();
+  for(int i = 1; i + 1 < degree; ++i)
+    sum += (points[mesh.corner_vertex[begin + i]] - o)
+             .cross(points[mesh.corner_vertex[begin + i + 1]] - o);
+  return 0.5 * sum;
+}
+
+inline double mean_edge_length(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
+{
+  double sum = 0;
+  std::size_t count = 0;
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(mesh.opposite[c] < c)
+    {
+      sum += (points[mesh.source(c)] - points[mesh.target(c)]).norm();
+      ++count;
+    }
+  return count == 0 ? 0 : sum / double(count);
+}
+
+inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
+{
+  double sum = 0;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+    sum += face_vector_area(mesh, points, f).norm();
+  return sum;
+}
+
+inline double bounding_box_diagonal(const std::vector<Vector_3>& points)
+{
+  if(points.empty())
+    return 0;
+  Vector_3 low = points.front(), high = points.front();
+  for(const Vector_3& p : points)
+  {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return (high - low).norm();
+}
+
+// the corners of face f, split into triangles; quads along their shorter diagonal
+inline std::vector<std::array<int, 3>>
+split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+{
+  const int c = mesh.face_begin[f];
+  if(mesh.degree(f) == 3)
+    return {{{c, c + 1, c + 2}}};
+  const auto at = [&](int i) { return points[mesh.corner_vertex[c + i]]; };
+  if((at(0) - at(2)).squaredNorm() <= (at(1) - at(3)).squaredNorm())
+    return {{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}};
+  return {{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}};
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INDEXED_MESH_H

@@ -1,0 +1,118 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_OPTIMIZATION_STATE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_OPTIMIZATION_STATE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Element_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A vertex as the optimization sees it: its point of R and R's normal there.
+struct Placed_vertex
+{
+  Surface_point on_reference;
+  Vector_3 position = Vector_3::Zero(); // differs from on_reference for constrained vertices off R
+  Vector_3 normal = Vector_3::Zero();
+};
+
+// The mesh on its reference: what movers read, and what accepted patches change.
+struct Optimization_state
+{
+  const Indexed_mesh& mesh;
+  const Reference_surface& reference;
+  const Element_set& elements;
+  std::vector<Placed_vertex> vertices;
+  std::vector<char> is_free;
+};
+
+// Whether a face is turned against R, and whether an edge is folded, for vertices given by a
+// function `vertex(v)` that returns a Placed_vertex. Degenerate faces count in neither.
+template <typename VertexAccess>
+Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  const int begin = mesh.face_begin[f], end = mesh.face_begin[f + 1];
+  const Vector_3& o = vertex(mesh.corner_vertex[begin]).position;
+  Vector_3 n = Vector_3::Zero();
+  for(int c = begin + 1; c + 1 < end; ++c)
+    n += (vertex(mesh.corner_vertex[c]).position - o)
+           .cross(vertex(mesh.corner_vertex[c + 1]).position - o);
+  return n;
+}
+
+template <typename VertexAccess>
+bool is_flipped(const Indexed_mesh& mesh, const VertexAccess& vertex, int f, const Vector_3& normal)
+{
+  Vector_3 sum = Vector_3::Zero();
+  for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+    sum += vertex(mesh.corner_vertex[c]).normal;
+  return normal.dot(sum) < 0;
+}
+
+inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
+{
+  return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
+}
+
+// density of one element on the surface
+template <typename Density, typename VertexAccess>
+double element_energy(const Density& density,
+                      const Element_set::Element& element,
+                      const VertexAccess& vertex)
+{
+  const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
+                      &c = vertex(element.vertices[2]);
+  const Eigen::Matrix2d shape =
+    signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal);
+  return density.value(shape * element.rest_inverse);
+}
+
+// Figures of the whole mesh. Sums run in the order of the faces.
+struct Global_measure
+{
+  double energy = 0;        // sum of densities
+  double capped_energy = 0; // the same, each density capped
+  double worst = 0;         // largest density
+  std::size_t flips = 0, fold_edges = 0;
+};
+
+template <typename Density>
+Global_measure measure(const Optimization_state& state, const Density& density, double cap)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  Global_measure m;
+  std::vector<Vector_3> normals(mesh.number_of_faces());
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    normals[f] = face_normal(mesh, vertex, f);
+    m.flips += is_flipped(mesh, vertex, f, normals[f]);
+  }
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(mesh.opposite[c] > c)
+      m.fold_edges +=
+        is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
+  for(int e = 0; e < state.elements.size(); ++e)
+  {
+    const double d = element_energy(density, state.elements[e], vertex);
+    m.energy += d;
+    m.capped_energy += (std::min)(d, cap);
+    m.worst = (std::max)(m.worst, d);
+  }
+  return m;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_OPTIMIZATION_STATE_H

@@ -1,0 +1,126 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A disk of faces with local indices: everything that movers and the acceptance test need of it.
+struct Patch
+{
+  std::vector<int> faces;    // of the whole mesh
+  std::vector<int> vertices; // of the whole mesh
+
+  Indexed_mesh polygons;             // the faces, in local vertices
+  std::vector<int> outside_face;     // per corner of polygons: face of the mesh across it if that
+                                     // is not in the patch, else -1
+  std::vector<char> is_free;         // per local vertex
+  int number_of_free_vertices = 0;
+  std::vector<Placed_vertex> placed; // per local vertex, as they are now
+  std::vector<Element_set::Element> elements; // in local vertices
+
+  // the faces split into triangles, for flattening and location
+  const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
+
+  bool is_split = false;
+  Indexed_mesh split;
+};
+
+// Builds patches; keeps its index maps from call to call.
+class Patch_builder
+{
+public:
+  explicit Patch_builder(const Indexed_mesh& mesh)
+    : m_face_stamp(mesh.number_of_faces(), 0),
+      m_vertex_stamp(mesh.number_of_vertices(), 0),
+      m_local(mesh.number_of_vertices(), -1)
+  {}
+
+  Patch build(const std::vector<int>& faces, const Optimization_state& state)
+  {
+    const Indexed_mesh& mesh = state.mesh;
+    ++m_stamp;
+    Patch patch;
+    patch.faces = faces;
+    for(const int f : faces)
+      m_face_stamp[f] = m_stamp;
+
+    std::vector<int> begins(1, 0), corners, corners_in_patch;
+    for(const int f : faces)
+    {
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      {
+        const int v = mesh.corner_vertex[c];
+        if(m_vertex_stamp[v] != m_stamp)
+        {
+          m_vertex_stamp[v] = m_stamp;
+          m_local[v] = int(patch.vertices.size());
+          patch.vertices.push_back(v);
+          patch.placed.push_back(state.vertices[v]);
+          corners_in_patch.push_back(0);
+        }
+        ++corners_in_patch[m_local[v]];
+        corners.push_back(m_local[v]);
+        const int o = mesh.opposite[c];
+        const int g = o < 0 ? -1 : mesh.corner_face[o];
+        patch.outside_face.push_back(g >= 0 && m_face_stamp[g] != m_stamp ? g : -1);
+      }
+      begins.push_back(int(corners.size()));
+      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+      {
+        Element_set::Element element = state.elements[e];
+        for(int& v : element.vertices)
+          v = m_local[v];
+        patch.elements.push_back(element);
+      }
+      patch.is_split = patch.is_split || mesh.degree(f) > 3;
+    }
+    const int n = int(patch.vertices.size());
+    patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), n);
+    for(int i = 0; i < n; ++i)
+    {
+      const int v = patch.vertices[i];
+      const bool is_inside = corners_in_patch[i] == mesh.vertex_begin[v + 1] - mesh.vertex_begin[v];
+      patch.is_free.push_back(state.is_free[v] && is_inside);
+      patch.number_of_free_vertices += patch.is_free.back();
+    }
+    if(patch.is_split)
+      split(patch);
+    return patch;
+  }
+
+private:
+  static void split(Patch& patch)
+  {
+    std::vector<Vector_3> points;
+    for(const Placed_vertex& p : patch.placed)
+      points.push_back(p.position);
+    std::vector<int> begins(1, 0), corners;
+    for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
+      for(const auto& t : split_face(patch.polygons, points, f))
+      {
+        for(const int c : t)
+          corners.push_back(patch.polygons.corner_vertex[c]);
+        begins.push_back(int(corners.size()));
+      }
+    patch.split = Indexed_mesh(std::move(begins), std::move(corners), int(points.size()));
+  }
+
+  std::vector<int> m_face_stamp, m_vertex_stamp, m_local;
+  int m_stamp = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_H

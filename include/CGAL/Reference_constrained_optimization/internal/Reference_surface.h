@@ -1,0 +1,251 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SURFACE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SURFACE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
+#include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <memory>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// a point of the reference: where it is, in which triangle, and its barycentric coordinates there
+struct Surface_point
+{
+  Vector_3 position = Vector_3::Zero();
+  int face = -1;
+  Vector_3 barycentric = Vector_3::Zero();
+};
+
+// The reference R: triangles, unit area-weighted vertex normals, global and local closest points.
+class Reference_surface
+{
+  typedef CGAL::Simple_cartesian<double> Kernel;
+  typedef std::vector<Kernel::Triangle_3>::const_iterator Triangle_iterator;
+  typedef Triangle_tree<Kernel, Triangle_iterator> Tree;
+
+public:
+  explicit Reference_surface(const Mesh_copy& copy) : m_points(copy.points)
+  {
+    std::vector<int> begins(1, 0), corners;
+    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
+      for(const auto& t : split_face(copy.mesh, copy.points, f))
+      {
+        for(const int c : t)
+          corners.push_back(copy.mesh.corner_vertex[c]);
+        begins.push_back(int(corners.size()));
+        m_original_face.push_back(f);
+      }
+    m_mesh = Indexed_mesh(std::move(begins), std::move(corners), int(m_points.size()));
+    compute_normals();
+    m_diagonal = bounding_box_diagonal(m_points);
+    m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
+    m_area = surface_area(m_mesh, m_points);
+
+    // degenerate triangles hold no point that their neighbours do not, and confuse the tree
+    for(int f = 0; f < m_mesh.number_of_faces(); ++f)
+    {
+      Kernel::Point_3 p[3];
+      for(int i = 0; i < 3; ++i)
+      {
+        const Vector_3& q = corner_point(f, i);
+        p[i] = Kernel::Point_3(q.x(), q.y(), q.z());
+      }
+      const Kernel::Triangle_3 triangle(p[0], p[1], p[2]);
+      if(!triangle.is_degenerate())
+      {
+        m_triangles.push_back(triangle);
+        m_triangle_face.push_back(f);
+      }
+    }
+    if(m_triangles.empty())
+      throw Invalid_input("reference: every face has zero area");
+    m_tree = std::make_unique<Tree>(m_triangles.begin(), m_triangles.end());
+    m_tree->build();
+    m_tree->accelerate_distance_queries();
+  }
+
+  const Indexed_mesh& mesh() const { return m_mesh; }
+  const std::vector<Vector_3>& points() const { return m_points; }
+  double diagonal() const { return m_diagonal; }
+  double mean_edge_length() const { return m_mean_edge_length; }
+  double area() const { return m_area; }
+  int original_face(int f) const { return m_original_face[f]; }
+
+  const Vector_3& corner_point(int f, int i) const
+  {
+    return m_points[m_mesh.corner_vertex[m_mesh.face_begin[f] + i]];
+  }
+
+  Surface_point point(int f, const Vector_3& barycentric) const
+  {
+    Surface_point s;
+    s.face = f;
+    s.barycentric = barycentric;
+    s.position = barycentric(0) * corner_point(f, 0) + barycentric(1) * corner_point(f, 1) +
+                 barycentric(2) * corner_point(f, 2);
+    return s;
+  }
+
+  // vertex normals, interpolated linearly; not of unit length
+  Vector_3 normal(const Surface_point& s) const
+  {
+    Vector_3 n = Vector_3::Zero();
+    for(int i = 0; i < 3; ++i)
+      n += s.barycentric(i) * m_normals[m_mesh.corner_vertex[m_mesh.face_begin[s.face] + i]];
+    return n;
+  }
+
+  // turns all normals round
+  void reverse()
+  {
+    for(Vector_3& n : m_normals)
+      n = -n;
+  }
+
+  Surface_point closest_in_face(const Vector_3& p, int f) const
+  {
+    return point(f, closest_barycentric(p, corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)));
+  }
+
+  // closest point of all of R, by the tree
+  Surface_point closest(const Vector_3& p) const
+  {
+    const auto hit = m_tree->closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()));
+    return closest_in_face(p, m_triangle_face[hit.second - m_triangles.begin()]);
+  }
+
+  // Local closest point: from `face` to ever closer neighbours. Never leaves the sheet it starts on.
+  Surface_point descend(const Vector_3& p, int face) const
+  {
+    Surface_point best = closest_in_face(p, face);
+    double best_distance = (best.position - p).squaredNorm();
+    while(true)
+    {
+      const int begin = m_mesh.face_begin[best.face];
+      int zeros = 0, zero = -1, one = -1;
+      for(int i = 0; i < 3; ++i)
+        if(best.barycentric(i) == 0)
+        {
+          ++zeros;
+          zero = i;
+        }
+        else
+          one = i;
+      if(zeros == 0)
+        return best;
+
+      Surface_point candidate = best;
+      double distance = best_distance;
+      const auto consider = [&](int f) {
+        const Surface_point s = closest_in_face(p, f);
+        const double d = (s.position - p).squaredNorm();
+        if(d < distance)
+        {
+          distance = d;
+          candidate = s;
+        }
+      };
+      if(zeros == 1)
+      {
+        const int o = m_mesh.opposite[m_mesh.next(begin + zero)];
+        if(o >= 0)
+          consider(m_mesh.corner_face[o]);
+      }
+      else
+      {
+        const int v = m_mesh.corner_vertex[begin + one];
+        for(int k = m_mesh.vertex_begin[v]; k < m_mesh.vertex_begin[v + 1]; ++k)
+          consider(m_mesh.corner_face[m_mesh.vertex_corners[k]]);
+      }
+      if(!(distance < best_distance * (1 - 1e-12)))
+        return best;
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+
+  // whether `to` can be reached from `from` over vertices of R within the given length of path
+  bool is_reachable(const Surface_point& from, const Surface_point& to, double length) const
+  {
+    typedef std::pair<double, int> Entry;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+    std::vector<std::pair<int, double>> reached; // few entries: linear look-up is enough
+    const auto lookup = [&](int v) -> double* {
+      for(auto& r : reached)
+        if(r.first == v)
+          return &r.second;
+      return nullptr;
+    };
+    if(from.face == to.face)
+      return true;
+    const auto corner = [&](int f, int i) { return m_mesh.corner_vertex[m_mesh.face_begin[f] + i]; };
+    for(int i = 0; i < 3; ++i)
+      queue.push(Entry((corner_point(from.face, i) - from.position).norm(), corner(from.face, i)));
+    while(!queue.empty() && reached.size() < 2000)
+    {
+      const Entry e = queue.top();
+      queue.pop();
+      if(e.first > length)
+        return false;
+      if(lookup(e.second))
+        continue;
+      reached.push_back({e.second, e.first});
+      for(int i = 0; i < 3; ++i)
+        if(corner(to.face, i) == e.second &&
+           e.first + (m_points[e.second] - to.position).norm() <= length)
+          return true;
+      for(int k = m_mesh.vertex_begin[e.second]; k < m_mesh.vertex_begin[e.second + 1]; ++k)
+      {
+        const int c = m_mesh.vertex_corners[k];
+        for(const int v : {m_mesh.target(c), m_mesh.source(m_mesh.previous(c))})
+          queue.push(Entry(e.first + (m_points[v] - m_points[e.second]).norm(), v));
+      }
+    }
+    return false;
+  }
+
+private:
+  void compute_normals()
+  {
+    m_normals.assign(m_points.size(), Vector_3::Zero());
+    for(int f = 0; f < m_mesh.number_of_faces(); ++f)
+    {
+      const Vector_3 a = face_vector_area(m_mesh, m_points, f);
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        m_normals[m_mesh.corner_vertex[c]] += a;
+    }
+    for(Vector_3& n : m_normals)
+    {
+      const double length = n.norm();
+      if(length > 0)
+        n /= length;
+    }
+  }
+
+  Indexed_mesh m_mesh;
+  std::vector<Vector_3> m_points;
+  std::vector<Vector_3> m_normals;
+  std::vector<int> m_original_face;
+  std::vector<Kernel::Triangle_3> m_triangles;
+  std::vector<int> m_triangle_face;
+  std::unique_ptr<Tree> m_tree;
+  double m_diagonal = 0, m_mean_edge_length = 0, m_area = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SURFACE_H

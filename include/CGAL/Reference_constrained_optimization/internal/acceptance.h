@@ -1,0 +1,228 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// What a patch looks like on R: energy, flips, fold edges (inside it and across its boundary), and
+// the vertices of what is wrong.
+struct Patch_measure
+{
+  double energy = 0;
+  int inner_defects = 0;    // flips, and folds of edges between two faces of the patch
+  int boundary_defects = 0; // folds of edges to faces outside
+  int defects() const { return inner_defects + boundary_defects; }
+};
+
+// Decides on what a mover proposes: first flips and fold edges, then energy, both measured on R.
+// Where the proposal fails the step is cut back, first where it does harm, then everywhere.
+class Acceptance_test
+{
+public:
+  struct Decision
+  {
+    bool accepted = false;
+    Patch_measure before, after;
+  };
+
+  // `worst_allowed` is a bound on the density of a single element that no step may exceed unless
+  // the element was as bad before.
+  template <typename Mover, typename Density>
+  Decision decide(const Patch& patch,
+                  const Optimization_state& state,
+                  Mover& mover,
+                  const Density& density,
+                  double worst_allowed)
+  {
+    Decision decision;
+    const int n = int(patch.vertices.size());
+    m_worst_allowed = worst_allowed;
+    prepare(patch, state);
+    decision.before = measure(patch, density, patch.placed, m_before, nullptr);
+    m_step.assign(n, 1.);
+    m_candidate = patch.placed;
+    m_needs_placing.assign(n, 1);
+
+    const int maximum_attempts = 10, local_attempts = 6;
+    for(int attempt = 0; attempt < maximum_attempts; ++attempt)
+    {
+      place(patch, mover);
+      m_is_offender.assign(n, 0);
+      decision.after = measure(patch, density, m_candidate, m_after, &m_before);
+      const int defects = decision.after.defects() - decision.before.defects();
+      const bool falls = decision.after.energy < decision.before.energy;
+      if(!m_exceeds && (defects < 0 || (defects == 0 && falls)))
+      {
+        decision.accepted = true;
+        return decision;
+      }
+      const bool has_offenders =
+        std::find(m_is_offender.begin(), m_is_offender.end(), char(1)) != m_is_offender.end();
+      if((defects > 0 || m_exceeds) && has_offenders && attempt < local_attempts)
+        cut_offenders(patch, attempt);
+      else
+        for(int v = 0; v < n; ++v)
+          cut(patch, v, 0.5);
+    }
+    decision.after = decision.before;
+    return decision;
+  }
+
+  const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
+
+private:
+  // per face and corner figures of a measure, to tell what is new
+  struct Details
+  {
+    std::vector<Vector_3> normals;
+    std::vector<char> flipped;     // per face
+    std::vector<char> folded;      // per corner
+    std::vector<double> densities; // per element
+  };
+
+  void prepare(const Patch& patch, const Optimization_state& state)
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+    m_outside_normal.resize(patch.outside_face.size());
+    for(std::size_t c = 0; c < patch.outside_face.size(); ++c)
+      if(patch.outside_face[c] >= 0)
+        m_outside_normal[c] = face_normal(state.mesh, vertex, patch.outside_face[c]);
+  }
+
+  template <typename Density>
+  Patch_measure measure(const Patch& patch,
+                        const Density& density,
+                        const std::vector<Placed_vertex>& placed,
+                        Details& details,
+                        const Details* before)
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
+    Patch_measure m;
+    m_exceeds = false;
+    details.normals.resize(mesh.number_of_faces());
+    details.flipped.resize(mesh.number_of_faces());
+    details.folded.assign(mesh.number_of_corners(), 0);
+    details.densities.resize(patch.elements.size());
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+    {
+      details.normals[f] = face_normal(mesh, vertex, f);
+      details.flipped[f] = is_flipped(mesh, vertex, f, details.normals[f]);
+      m.inner_defects += details.flipped[f];
+      if(before && details.flipped[f] && !before->flipped[f])
+        mark_face(mesh, f);
+    }
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+    {
+      const int o = mesh.opposite[c], f = mesh.corner_face[c];
+      if(o > c)
+      {
+        details.folded[c] = is_folded(details.normals[f], details.normals[mesh.corner_face[o]]);
+        m.inner_defects += details.folded[c];
+      }
+      else if(o < 0 && patch.outside_face[c] >= 0)
+      {
+        details.folded[c] = is_folded(details.normals[f], m_outside_normal[c]);
+        m.boundary_defects += details.folded[c];
+      }
+      if(before && details.folded[c] && !before->folded[c])
+      {
+        mark_face(mesh, f);
+        if(o >= 0)
+          mark_face(mesh, mesh.corner_face[o]);
+      }
+    }
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+    {
+      const double d = element_energy(density, patch.elements[e], vertex);
+      details.densities[e] = d;
+      m.energy += d;
+      if(before && d > m_worst_allowed && d > before->densities[e])
+      {
+        m_exceeds = true;
+        for(const int v : patch.elements[e].vertices)
+          m_is_offender[v] = 1;
+      }
+    }
+    return m;
+  }
+
+  void mark_face(const Indexed_mesh& mesh, int f)
+  {
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      m_is_offender[mesh.corner_vertex[c]] = 1;
+  }
+
+  template <typename Mover>
+  void place(const Patch& patch, Mover& mover)
+  {
+    for(std::size_t v = 0; v < patch.vertices.size(); ++v)
+    {
+      if(!m_needs_placing[v])
+        continue;
+      m_needs_placing[v] = 0;
+      m_candidate[v] = patch.placed[v];
+      if(!patch.is_free[v])
+        continue;
+      while(m_step[v] > 0 && !mover.place(patch, int(v), m_step[v], m_candidate[v]))
+      {
+        m_step[v] = m_step[v] > 0.05 ? 0.5 * m_step[v] : 0;
+        m_candidate[v] = patch.placed[v];
+      }
+    }
+  }
+
+  void cut(const Patch& patch, int v, double factor)
+  {
+    if(!patch.is_free[v] || m_step[v] == 0)
+      return;
+    m_step[v] *= factor;
+    m_needs_placing[v] = 1;
+    if(m_step[v] < 1e-3)
+    {
+      m_step[v] = 0;
+      m_candidate[v] = patch.placed[v];
+    }
+  }
+
+  // the offending vertices go back, and after a while their neighbours, too
+  void cut_offenders(const Patch& patch, int attempt)
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    for(int ring = 0; ring < attempt / 2; ++ring)
+    {
+      const std::vector<char> inner = m_is_offender;
+      for(int c = 0; c < mesh.number_of_corners(); ++c)
+        if(inner[mesh.source(c)] || inner[mesh.target(c)])
+          m_is_offender[mesh.source(c)] = m_is_offender[mesh.target(c)] = 1;
+    }
+    for(int v = 0; v < int(m_is_offender.size()); ++v)
+      if(m_is_offender[v])
+        cut(patch, v, attempt < 3 ? 0.4 : 0.);
+  }
+
+  double m_worst_allowed = 0;
+  bool m_exceeds = false;
+  std::vector<double> m_step;
+  std::vector<char> m_needs_placing, m_is_offender;
+  std::vector<Placed_vertex> m_candidate;
+  std::vector<Vector_3> m_outside_normal;
+  Details m_before, m_after;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H

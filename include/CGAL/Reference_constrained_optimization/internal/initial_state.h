@@ -1,0 +1,133 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INITIAL_STATE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INITIAL_STATE_H
+
+#include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <CGAL/boost/graph/iterator.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Decides which vertices may move: those with faces, away from the border, not constrained and not
+// on a constrained edge.
+template <typename PolygonMesh, typename NamedParameters>
+void collect_free_vertices(const PolygonMesh& g, const NamedParameters& np, Optimization_state& state)
+{
+  typedef boost::graph_traits<PolygonMesh> Graph_traits;
+  const Indexed_mesh& mesh = state.mesh;
+  state.is_free.assign(mesh.number_of_vertices(), 0);
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+    state.is_free[v] =
+      !mesh.is_border_vertex[v] && mesh.vertex_begin[v + 1] > mesh.vertex_begin[v];
+
+  if constexpr(!parameters::is_default_parameter<
+                 NamedParameters, CGAL::internal_np::vertex_is_constrained_t>::value)
+  {
+    const auto map = parameters::get_parameter(np, CGAL::internal_np::vertex_is_constrained);
+    int i = 0;
+    for(const typename Graph_traits::vertex_descriptor v : vertices(g))
+    {
+      if(get(map, v))
+        state.is_free[i] = 0;
+      ++i;
+    }
+  }
+  if constexpr(!parameters::is_default_parameter<NamedParameters,
+                                                 CGAL::internal_np::edge_is_constrained_t>::value)
+  {
+    const auto map = parameters::get_parameter(np, CGAL::internal_np::edge_is_constrained);
+    int f = 0;
+    for(const typename Graph_traits::face_descriptor face : faces(g))
+    {
+      // the half-edge to a corner's vertex starts at the corner before it
+      int c = mesh.face_begin[f];
+      for(const typename Graph_traits::halfedge_descriptor h :
+          CGAL::halfedges_around_face(halfedge(face, g), g))
+      {
+        if(get(map, edge(h, g)))
+          state.is_free[mesh.corner_vertex[c]] =
+            state.is_free[mesh.corner_vertex[mesh.previous(c)]] = 0;
+        ++c;
+      }
+      ++f;
+    }
+  }
+}
+
+// Finds every vertex' point of R, once, by the tree, and moves free vertices onto it. A reference
+// that is oriented the other way is turned round.
+inline void place_on_reference(const std::vector<Vector_3>& points,
+                               Reference_surface& reference,
+                               Optimization_state& state,
+                               Result& result)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  const double limit = 0.1 * reference.diagonal();
+  // a vertex this close is on R already, and keeps its bits
+  double largest = 0;
+  for(const Vector_3& p : points)
+    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
+
+  state.vertices.resize(points.size());
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+  {
+    Placed_vertex& placed = state.vertices[v];
+    placed.position = points[v];
+    if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
+      continue;
+    placed.on_reference = reference.closest(points[v]);
+    const double distance = (placed.on_reference.position - points[v]).norm();
+    if(distance > limit)
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +
+                          " away from the reference, more than a tenth of its diagonal (" +
+                          std::to_string(reference.diagonal()) + ")");
+    result.largest_initial_distance = (std::max)(result.largest_initial_distance, distance);
+    if(state.is_free[v])
+    {
+      ++result.number_of_free_vertices;
+      if(distance > rounding)
+        placed.position = placed.on_reference.position;
+    }
+  }
+
+  const auto orient = [&]() {
+    for(Placed_vertex& placed : state.vertices)
+      if(placed.on_reference.face >= 0)
+        placed.normal = reference.normal(placed.on_reference);
+  };
+  orient();
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  double agreement = 0;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    const Vector_3 n = face_normal(mesh, vertex, f);
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      agreement += n.dot(vertex(mesh.corner_vertex[c]).normal);
+  }
+  if(agreement < 0)
+  {
+    reference.reverse();
+    orient();
+  }
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INITIAL_STATE_H

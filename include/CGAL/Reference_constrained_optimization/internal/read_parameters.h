@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H
+
+#include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+template <typename T>
+T& unwrap(T& t)
+{
+  return t;
+}
+template <typename T>
+T& unwrap(std::reference_wrapper<T>& t)
+{
+  return t.get();
+}
+
+inline double checked_positive(double value, const char* name)
+{
+  if(!(value > 0))
+    throw Invalid_input(std::string(name) + " must be positive, but is " + std::to_string(value));
+  return value;
+}
+
+// The numbers among the named parameters, checked.
+template <typename NamedParameters>
+Loop_parameters read_loop_parameters(const NamedParameters& np)
+{
+  using parameters::choose_parameter;
+  using parameters::get_parameter;
+  Loop_parameters p;
+  p.number_of_iterations = choose_parameter(
+    get_parameter(np, CGAL::internal_np::number_of_iterations), p.number_of_iterations);
+  p.random_seed =
+    choose_parameter(get_parameter(np, CGAL::internal_np::random_seed), p.random_seed);
+  p.maximum_running_time = checked_positive(
+    choose_parameter(get_parameter(np, CGAL::internal_np::maximum_running_time),
+                     p.maximum_running_time),
+    "maximum_running_time");
+  p.energy_tolerance =
+    choose_parameter(get_parameter(np, internal_np::energy_tolerance), p.energy_tolerance);
+  if(!(p.energy_tolerance >= 0))
+    throw Invalid_input("energy_tolerance must not be negative, but is " +
+                        std::to_string(p.energy_tolerance));
+  p.selection.developability_threshold =
+    checked_positive(choose_parameter(get_parameter(np, internal_np::developability_threshold),
+                                      p.selection.developability_threshold),
+                     "developability_threshold");
+  p.selection.maximum_patch_size = choose_parameter(
+    get_parameter(np, internal_np::maximum_patch_size), p.selection.maximum_patch_size);
+  checked_positive(p.selection.maximum_patch_size, "maximum_patch_size");
+  return p;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H

@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITE_BACK_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITE_BACK_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <CGAL/property_map.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// writes the positions of the vertices that moved; the others keep their bits
+template <typename PolygonMesh, typename VertexPointMap>
+void write_points(const PolygonMesh& g,
+                  const VertexPointMap& vpm,
+                  const std::vector<Vector_3>& before,
+                  const Optimization_state& state)
+{
+  typedef typename boost::property_traits<VertexPointMap>::value_type Point;
+  std::size_t i = 0;
+  for(const auto v : vertices(g))
+  {
+    const Vector_3& p = state.vertices[i].position;
+    if(p != before[i])
+      put(vpm, v, Point(p.x(), p.y(), p.z()));
+    ++i;
+  }
+}
+
+// hands out the locations on R. Barycentric coordinates are ordered as in CGAL's `locate`: source
+// of the face's half-edge first, while faces are read here from its target on.
+template <typename PolygonMesh, typename ReferenceMesh, typename NamedParameters>
+void write_locations(const PolygonMesh& g,
+                     const ReferenceMesh& reference,
+                     const NamedParameters& np,
+                     const Optimization_state& state)
+{
+  if constexpr(!parameters::is_default_parameter<NamedParameters,
+                                                 internal_np::vertex_location_map_t>::value)
+  {
+    auto map = parameters::get_parameter(np, internal_np::vertex_location_map);
+    const std::vector<typename boost::graph_traits<ReferenceMesh>::face_descriptor> all_faces(
+      faces(reference).begin(), faces(reference).end());
+    std::size_t i = 0;
+    for(const auto v : vertices(g))
+    {
+      const Surface_point& p = state.vertices[i++].on_reference;
+      if(p.face >= 0)
+        put(map, v,
+            std::make_pair(all_faces[state.reference.original_face(p.face)],
+                           std::array<double, 3>{
+                             {p.barycentric(2), p.barycentric(0), p.barycentric(1)}}));
+    }
+  }
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITE_BACK_H

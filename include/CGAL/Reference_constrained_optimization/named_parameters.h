@@ -1,0 +1,115 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_NAMED_PARAMETERS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_NAMED_PARAMETERS_H
+
+#include <CGAL/Named_function_parameters.h>
+
+#include <type_traits>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal_np {
+
+enum developability_threshold_t { developability_threshold };
+enum energy_tolerance_t { energy_tolerance };
+enum drift_bound_t { drift_bound };
+enum use_on_surface_steps_t { use_on_surface_steps };
+enum use_finishing_stage_t { use_finishing_stage };
+enum vertex_location_map_t { vertex_location_map };
+enum maximum_patch_size_t { maximum_patch_size };
+
+} // namespace internal_np
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * is a list of named parameters to which this package's own parameters can be appended.
+ *
+ * Own parameters come first in a chain, CGAL's after:
+ * `developability_threshold(0.1).drift_bound(0.2).number_of_iterations(5)`.
+ */
+template <typename T, typename Tag, typename Base = CGAL::internal_np::No_property>
+struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
+{
+  /// the CGAL list it extends.
+  typedef CGAL::Named_function_parameters<T, Tag, Base> Cgal_parameters;
+
+  /// constructs a list of one parameter.
+  explicit Named_parameters(const T& v) : Cgal_parameters(v) {}
+  /// appends a parameter to a list.
+  Named_parameters(const T& v, const Base& base) : Cgal_parameters(v, base) {}
+
+#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                      \
+  template <typename K>                                                                         \
+  Named_parameters<K, internal_np::NAME##_t, Cgal_parameters> NAME(const K& k) const            \
+  {                                                                                             \
+    return Named_parameters<K, internal_np::NAME##_t, Cgal_parameters>(k, *this);               \
+  }
+  CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
+  CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
+  CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
+  CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)
+  CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
+  CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
+  CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
+#undef CGAL_RCO_ADD_NAMED_PARAMETER
+};
+
+namespace internal {
+
+// A list of ours derives from several lists of CGAL's, so that CGAL's look-up functions could not
+// deduce which one is meant: hand them the outermost.
+template <typename T, typename Tag, typename Base>
+const CGAL::Named_function_parameters<T, Tag, Base>&
+cgal_parameters(const Named_parameters<T, Tag, Base>& np)
+{
+  return np;
+}
+
+template <typename T, typename Tag, typename Base>
+const CGAL::Named_function_parameters<T, Tag, Base>&
+cgal_parameters(const CGAL::Named_function_parameters<T, Tag, Base>& np)
+{
+  return np;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+
+namespace parameters {
+
+#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                       \
+  template <typename K>                                                                          \
+  Reference_constrained_optimization::Named_parameters<                                          \
+    K, Reference_constrained_optimization::internal_np::NAME##_t>                                \
+  NAME(const K& k)                                                                               \
+  {                                                                                              \
+    return Reference_constrained_optimization::Named_parameters<                                 \
+      K, Reference_constrained_optimization::internal_np::NAME##_t>(k);                          \
+  }
+/// \addtogroup PkgReferenceConstrainedOptimizationRef
+/// @{
+/// starts a list with \f$ \epsilon_d \f$, the largest cost of a face in a patch's cone proxy.
+CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
+/// starts a list with the relative decrease per iteration below which the optimization stops.
+CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
+/// starts a list with the largest distance between the mesh and the reference that is wanted.
+CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
+/// starts a list with whether patches may be optimized directly on the reference.
+CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)
+/// starts a list with whether a last stage works on the worst elements alone.
+CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
+/// starts a list with a property map that receives every vertex' location on the reference.
+CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
+/// starts a list with the largest number of faces of a patch.
+CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
+/// @}
+#undef CGAL_RCO_ADD_NAMED_PARAMETER
+
+} // namespace parameters
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_NAMED_PARAMETERS_H

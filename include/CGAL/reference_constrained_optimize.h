@@ -1,0 +1,241 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
+
+#include <CGAL/Reference_constrained_optimization/Default_visitor.h>
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/write_back.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <CGAL/boost/graph/named_params_helper.h>
+#include <CGAL/tags.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace CGAL {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * moves the vertices of a mesh along a reference surface so that an energy falls; the connectivity
+ * does not change.
+ *
+ * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
+ * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
+ * mapped back onto the reference. A disk's new positions are kept only if, measured on the
+ * reference, the number of flipped faces and folded edges falls, or does not change while the
+ * energy falls. Border vertices and constrained vertices do not move, not by a bit. All other
+ * vertices of the result lie on the reference. The same input and seed give the same bits for any
+ * number of threads.
+ *
+ * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
+ * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads
+ *         where the energy is made for them.
+ * \tparam ReferenceMesh a model of `FaceListGraph` and `HalfedgeListGraph`; quads are split.
+ * \tparam Energy a model of `ReferenceConstrainedEnergy`.
+ * \tparam NamedParameters a sequence of \ref bgl_namedparameters "Named Parameters"
+ * \tparam NamedParametersReference the same, for the reference
+ *
+ * \param mesh the mesh. Vertices off the reference are moved onto it first, unless constrained.
+ * \param reference the surface \f$ R \f$. It may be the same object as `mesh`: then the mesh's
+ *        initial shape is the reference.
+ * \param energy the energy, for example `Reference_constrained_optimization::Minimum_angle_energy`.
+ * \param np optional parameters of the package (first in a chain) and of CGAL (after them):
+ *
+ * \cgalNamedParamsBegin
+ *   \cgalParamNBegin{vertex_point_map}
+ *     \cgalParamDescription{a property map from the vertices of `mesh` to points}
+ *     \cgalParamType{a model of `ReadWritePropertyMap`}
+ *     \cgalParamDefault{`boost::get(CGAL::vertex_point, mesh)`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{geom_traits}
+ *     \cgalParamDescription{an instance of a geometric traits class; computations are made with
+ *                           `double` whatever its number type}
+ *     \cgalParamType{a model of `Kernel`}
+ *     \cgalParamDefault{the kernel of the point type}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{number_of_iterations}
+ *     \cgalParamDescription{the largest number of outer iterations; each visits every face that
+ *                           may still gain}
+ *     \cgalParamType{`unsigned int`}
+ *     \cgalParamDefault{`30`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{random_seed}
+ *     \cgalParamDescription{the seed of the order in which patches are started}
+ *     \cgalParamType{`unsigned int`}
+ *     \cgalParamDefault{`0`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{visitor}
+ *     \cgalParamDescription{is told of iterations, rounds and patches, and can stop them; pass it
+ *                           by `std::ref` to keep its state}
+ *     \cgalParamType{a model of `ReferenceConstrainedOptimizationVisitor`}
+ *     \cgalParamDefault{`Reference_constrained_optimization::Default_visitor`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{maximum_running_time}
+ *     \cgalParamDescription{the time in seconds after which no further round is started}
+ *     \cgalParamType{`double`}
+ *     \cgalParamDefault{unlimited}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{vertex_is_constrained_map}
+ *     \cgalParamDescription{tells the vertices that must not move}
+ *     \cgalParamType{a model of `ReadablePropertyMap` with the vertex descriptor as key type and
+ *                    `bool` as value type}
+ *     \cgalParamDefault{no vertex is constrained}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{edge_is_constrained_map}
+ *     \cgalParamDescription{tells the edges whose two vertices must not move}
+ *     \cgalParamType{a model of `ReadablePropertyMap` with the edge descriptor as key type and
+ *                    `bool` as value type}
+ *     \cgalParamDefault{no edge is constrained}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{developability_threshold}
+ *     \cgalParamDescription{\f$ \epsilon_d \f$: a face joins a patch only if its cost
+ *                           \f$ (\langle n_p, n_t \rangle - \cos\theta_p)^2 \f$ in the patch's cone
+ *                           proxy is below it (without unit)}
+ *     \cgalParamType{`double`}
+ *     \cgalParamDefault{`0.25`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{energy_tolerance}
+ *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
+ *                           less than this part of it; single elements count with a capped value
+ *                           here}
+ *     \cgalParamType{`double`}
+ *     \cgalParamDefault{`1e-4`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{maximum_patch_size}
+ *     \cgalParamDescription{the largest number of faces of a patch}
+ *     \cgalParamType{`int`}
+ *     \cgalParamDefault{`1000`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{vertex_location_map}
+ *     \cgalParamDescription{receives for every vertex that is not isolated where it lies on the
+ *                           reference: a face and the barycentric coordinates with respect to the
+ *                           vertices of that face, the first being `target(halfedge(f, reference))`'s
+ *                           predecessor as in `Polygon_mesh_processing::locate()`. The reference
+ *                           must be a triangle mesh}
+ *     \cgalParamType{a model of `WritablePropertyMap` with the vertex descriptor of `mesh` as key
+ *                    type and `std::pair<face_descriptor, std::array<double, 3>>` as value type}
+ *     \cgalParamDefault{unused}
+ *   \cgalParamNEnd
+ * \cgalNamedParamsEnd
+ *
+ * \param np_reference optional parameters of the reference:
+ *
+ * \cgalNamedParamsBegin
+ *   \cgalParamNBegin{vertex_point_map}
+ *     \cgalParamDescription{a property map from the vertices of `reference` to points}
+ *     \cgalParamType{a model of `ReadablePropertyMap`}
+ *     \cgalParamDefault{`boost::get(CGAL::vertex_point, reference)`}
+ *   \cgalParamNEnd
+ * \cgalNamedParamsEnd
+ *
+ * \return what was done and reached.
+ *
+ * \throws Reference_constrained_optimization::Invalid_input if a mesh is empty, not manifold, has a
+ *         coordinate that is not finite or a face that the energy cannot use, if a vertex is
+ *         further from the reference than a tenth of the reference's diagonal, or if a parameter
+ *         makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
+ *         accepted state.
+ */
+template <typename ConcurrencyTag = CGAL::Sequential_tag,
+          typename PolygonMesh,
+          typename ReferenceMesh,
+          typename Energy,
+          typename NamedParameters = parameters::Default_named_parameters,
+          typename NamedParametersReference = parameters::Default_named_parameters>
+Reference_constrained_optimization::Result
+reference_constrained_optimize(
+  PolygonMesh& mesh,
+  const ReferenceMesh& reference,
+  const Energy& energy,
+  const NamedParameters& np = parameters::default_values(),
+  const NamedParametersReference& np_reference = parameters::default_values())
+{
+  namespace RCO = Reference_constrained_optimization;
+  namespace internal = RCO::internal;
+#ifndef CGAL_LINKED_WITH_TBB
+  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
+                "Parallel_tag is enabled but TBB is unavailable.");
+#endif
+  const auto start = std::chrono::steady_clock::now();
+  const auto& own_np = internal::cgal_parameters(np);
+  const auto& own_np_reference = internal::cgal_parameters(np_reference);
+
+  const internal::Loop_parameters loop_parameters = internal::read_loop_parameters(own_np);
+  auto vpm = parameters::choose_parameter(
+    parameters::get_parameter(own_np, CGAL::internal_np::vertex_point),
+    CGAL::get_property_map(CGAL::vertex_point, mesh));
+  auto reference_vpm = parameters::choose_parameter(
+    parameters::get_parameter(own_np_reference, CGAL::internal_np::vertex_point),
+    CGAL::get_const_property_map(CGAL::vertex_point, reference));
+
+  const internal::Mesh_copy copy = internal::read_face_graph(mesh, vpm, "mesh");
+  internal::Reference_surface surface(
+    internal::read_face_graph(reference, reference_vpm, "reference"));
+  const RCO::Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex,
+                                    copy.points.size(),
+                                    internal::mean_edge_length(copy.mesh, copy.points),
+                                    internal::surface_area(copy.mesh, copy.points), surface.area());
+  const internal::Element_set elements(energy, context);
+  RCO::Result result;
+  internal::Optimization_state state{copy.mesh, surface, elements, {}, {}};
+  internal::collect_free_vertices(mesh, own_np, state);
+  internal::place_on_reference(copy.points, surface, state, result);
+  result.times.setup = internal::seconds_since(start);
+
+  const auto& density = energy.density();
+  typedef typename std::decay<decltype(density)>::type Density;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const internal::Global_measure initial = internal::measure(state, density, infinity);
+  result.initial_energy = initial.energy / elements.size();
+  result.initial_number_of_flips = initial.flips;
+  result.initial_number_of_fold_edges = initial.fold_edges;
+
+  const auto finish = [&]() {
+    internal::write_points(mesh, vpm, copy.points, state);
+    internal::write_locations(mesh, reference, own_np, state);
+    const internal::Global_measure final = internal::measure(state, density, infinity);
+    result.final_energy = final.energy / elements.size();
+    result.number_of_flips = final.flips;
+    result.number_of_fold_edges = final.fold_edges;
+    result.running_time = internal::seconds_since(start);
+  };
+  auto visitor_parameter = parameters::choose_parameter(
+    parameters::get_parameter(own_np, CGAL::internal_np::visitor), RCO::Default_visitor());
+  auto& visitor = internal::unwrap(visitor_parameter);
+  typedef typename std::decay<decltype(visitor)>::type Visitor;
+  if(result.number_of_free_vertices > 0)
+  {
+    internal::Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, loop_parameters,
+                                                               visitor, result, start);
+    try
+    {
+      loop.run();
+    }
+    catch(...)
+    {
+      finish();
+      throw;
+    }
+  }
+  finish();
+  return result;
+}
+
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
