@@ -114,12 +114,12 @@ namespace CGAL {
  *                           less than this part of it; single elements count with a capped value
  *                           here}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`1e-4`}
+ *     \cgalParamDefault{`1e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch}
  *     \cgalParamType{`int`}
- *     \cgalParamDefault{`1000`}
+ *     \cgalParamDefault{`0`: six times the square root of the number of faces, between 400 and 4000}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{vertex_location_map}
  *     \cgalParamDescription{receives for every vertex that is not isolated where it lies on the

@@ -22,13 +22,17 @@ inline double seconds_since(const std::chrono::steady_clock::time_point& start)
 }
 
 // A mover proposes new positions of a patch's free vertices. It provides
-//   template <class Density> bool propose(const Patch&, const Density&);
-// which says whether there is anything to try, and
+//   bool propose(const Patch&, const Density&);
+// which says whether there is anything to try;
 //   bool place(const Patch&, int v, double t, Placed_vertex&);
-// which puts local vertex v at part t in (0, 1] of its way, and says whether it could.
+// which puts local vertex v at part t in (0, 1] of its way, and says whether it could;
+//   bool propose_again(const Patch&, const std::vector<double>& steps, const Density&);
+// which, after a proposal was accepted with the given part of its way for every vertex, and the
+// patch updated accordingly, proposes further ones.
 //
 // This one goes through the plane: flatten the patch, minimize there in the metric of the surface,
-// map back.
+// map back. A further proposal starts from where the last one ended in the plane, with the metric
+// as it is there.
 class Flattened_mover
 {
 public:
@@ -36,7 +40,7 @@ public:
   {
     Flattening_parameters flattening;
     bool use_surface_metric = true;
-    int newton_steps = 3;
+    int newton_steps = 3; // per proposal
     bool check_overlap = true;
   };
 
@@ -62,16 +66,31 @@ public:
       return false;
 
     const auto start_of_descent = std::chrono::steady_clock::now();
-    const std::vector<Vector_2>& u = m_flattening.positions;
-    set_up_problem(patch);
-    m_target = u;
-    const auto outcome = m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps,
-                                              1e-8);
-    m_start_triangle.assign(u.size(), -1);
+    m_start_triangle.assign(m_flattening.positions.size(), -1);
     for(int c = 0; c < triangles.number_of_corners(); ++c)
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
+    set_up_problem(patch);
+    m_optimizer.analyze(m_problem);
+    const bool proposes = optimize(density);
     m_optimization_time = seconds_since(start_of_descent);
-    return outcome.steps > 0;
+    return proposes;
+  }
+
+  template <typename Density>
+  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<Vector_2>& u = m_flattening.positions;
+    for(std::size_t v = 0; v < u.size(); ++v)
+      u[v] += steps[v] * (m_target[v] - u[v]);
+    bool proposes = false;
+    if(is_locally_injective(patch.triangles(), u))
+    {
+      set_up_problem(patch);
+      proposes = optimize(density);
+    }
+    m_optimization_time += seconds_since(start);
+    return proposes;
   }
 
   bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
@@ -90,6 +109,14 @@ public:
   double optimization_time() const { return m_optimization_time; }
 
 private:
+  template <typename Density>
+  bool optimize(const Density& density)
+  {
+    m_target = m_flattening.positions;
+    return m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps, 1e-8).steps >
+           0;
+  }
+
   void set_up_problem(const Patch& patch)
   {
     const std::vector<Vector_2>& u = m_flattening.positions;

@@ -11,8 +11,10 @@
 
 #include <CGAL/Simple_cartesian.h>
 
+#include <functional>
 #include <memory>
 #include <queue>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -181,27 +183,21 @@ public:
   {
     typedef std::pair<double, int> Entry;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    std::vector<std::pair<int, double>> reached; // few entries: linear look-up is enough
-    const auto lookup = [&](int v) -> double* {
-      for(auto& r : reached)
-        if(r.first == v)
-          return &r.second;
-      return nullptr;
-    };
+    std::unordered_set<int> reached;
     if(from.face == to.face)
       return true;
     const auto corner = [&](int f, int i) { return m_mesh.corner_vertex[m_mesh.face_begin[f] + i]; };
     for(int i = 0; i < 3; ++i)
       queue.push(Entry((corner_point(from.face, i) - from.position).norm(), corner(from.face, i)));
-    while(!queue.empty() && reached.size() < 2000)
+    const std::size_t enough = 2000;
+    while(!queue.empty() && reached.size() < enough)
     {
       const Entry e = queue.top();
       queue.pop();
       if(e.first > length)
         return false;
-      if(lookup(e.second))
+      if(!reached.insert(e.second).second)
         continue;
-      reached.push_back({e.second, e.first});
       for(int i = 0; i < 3; ++i)
         if(corner(to.face, i) == e.second &&
            e.first + (m_points[e.second] - to.position).norm() <= length)

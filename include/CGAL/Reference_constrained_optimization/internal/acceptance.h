@@ -79,7 +79,9 @@ public:
     return decision;
   }
 
+  // what was accepted, and the part of its way that each vertex went
   const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
+  const std::vector<double>& steps() const { return m_step; }
 
 private:
   // per face and corner figures of a measure, to tell what is new
@@ -89,6 +91,7 @@ private:
     std::vector<char> flipped;     // per face
     std::vector<char> folded;      // per corner
     std::vector<double> densities; // per element
+    std::vector<double> turns;     // per corner: cosine between R's normals at the half-edge's ends
   };
 
   void prepare(const Patch& patch, const Optimization_state& state)
@@ -141,6 +144,22 @@ private:
         mark_face(mesh, f);
         if(o >= 0)
           mark_face(mesh, mesh.corner_face[o]);
+      }
+    }
+    // An edge that comes to join places where R looks in nearly opposite directions cuts off the
+    // feature between them. (On armadillo the bound of 120 degrees lowers the drift from 1.4 to 1.0
+    // mean edges and costs 0.03 degrees of the mean angle; one of 90 costs 0.1 and much of the
+    // minimum.)
+    const double smallest_turn = -0.5;
+    details.turns.resize(mesh.number_of_corners());
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+    {
+      const Vector_3 &a = placed[mesh.source(c)].normal, &b = placed[mesh.target(c)].normal;
+      details.turns[c] = a.dot(b) / (a.norm() * b.norm());
+      if(before && details.turns[c] < smallest_turn && details.turns[c] < before->turns[c])
+      {
+        m_exceeds = true;
+        m_is_offender[mesh.source(c)] = m_is_offender[mesh.target(c)] = 1;
       }
     }
     for(std::size_t e = 0; e < patch.elements.size(); ++e)

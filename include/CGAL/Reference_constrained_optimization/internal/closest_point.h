@@ -42,13 +42,14 @@ inline Vector_3 closest_barycentric(const Vector_3& p,
     return best;
   };
 
+  // With cross products, as the determinant of dot products would lose all digits of a thin
+  // triangle; one thinner still is no more than its sides.
   const Vector_3 u = b - a, v = c - a, w = p - a;
-  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
-  const double wu = w.dot(u), wv = w.dot(v);
-  const double det = uu * vv - uv * uv;
-  if(!(det > 1e-28 * uu * vv))
+  const Vector_3 n = u.cross(v);
+  const double det = n.squaredNorm();
+  if(!(det > 1e-16 * u.squaredNorm() * v.squaredNorm()))
     return on_sides();
-  const double y = (vv * wu - uv * wv) / det, z = (uu * wv - uv * wu) / det;
+  const double y = w.cross(v).dot(n) / det, z = u.cross(w).dot(n) / det;
   if(y > 0 && z > 0 && y + z < 1)
     return Vector_3(1 - y - z, y, z);
   return on_sides();

@@ -9,7 +9,8 @@
 #include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
+#include <limits>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
@@ -35,45 +36,41 @@ inline bool map_to_reference(const Patch& patch,
   int order[3] = {0, 1, 2};
   std::sort(order, order + 3,
             [&](int a, int b) { return location.barycentric(a) > location.barycentric(b); });
+  const Surface_point& nearest = corner[order[0]]->on_reference;
 
-  const auto is_same_sheet = [&](const Surface_point& s) {
-    return reference.normal(s).dot(normal) > 0;
+  double best_distance = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Surface_point& foot) {
+    const double distance = (foot.position - point).norm();
+    if(distance < best_distance && reference.normal(foot).dot(normal) > 0)
+    {
+      result.on_reference = foot;
+      best_distance = distance;
+    }
   };
-  // descending from the nearest corner ends no further away than that corner; a foot at a large part
-  // of this distance may be a local minimum that misses a closer part of the sheet
-  Surface_point best;
-  double best_distance = -1;
+  // Descending from a corner ends no further away than the corner is. A foot at a large part of
+  // that distance may be a local minimum that misses a closer part of the sheet.
+  const auto is_close = [&](const Surface_point& from) {
+    return best_distance <= 0.25 * (from.position - point).norm();
+  };
   for(int k = 0; k < 3; ++k)
   {
     const Surface_point& from = corner[order[k]]->on_reference;
-    const Surface_point foot = reference.descend(point, from.face);
-    const double distance = (foot.position - point).norm();
-    const double allowed = 0.25 * (from.position - point).norm();
-    if(is_same_sheet(foot) && (best_distance < 0 || distance < best_distance))
-    {
-      best = foot;
-      best_distance = distance;
-    }
-    if(best_distance >= 0 && best_distance <= allowed)
+    consider(reference.descend(point, from.face));
+    if(is_close(from))
       break;
-    if(k == 2)
-    {
-      const Surface_point global = reference.closest(point);
-      const double reach = (corner[order[0]]->position - point).norm();
-      const double global_distance = (global.position - point).norm();
-      if(is_same_sheet(global) && (best_distance < 0 || global_distance < 0.9 * best_distance) &&
-         reference.is_reachable(corner[order[0]]->on_reference, global, 3 * reach + global_distance))
-      {
-        best = global;
-        best_distance = global_distance;
-      }
-    }
   }
-  if(best_distance < 0)
+  if(!is_close(nearest))
+  {
+    const Surface_point global = reference.closest(point);
+    const double reach = 3 * (nearest.position - point).norm() + (global.position - point).norm();
+    if((global.position - point).norm() < 0.9 * best_distance &&
+       reference.is_reachable(nearest, global, reach))
+      consider(global);
+  }
+  if(!std::isfinite(best_distance))
     return false;
-  result.on_reference = best;
-  result.position = best.position;
-  result.normal = reference.normal(best);
+  result.position = result.on_reference.position;
+  result.normal = reference.normal(result.on_reference);
   return true;
 }
 

@@ -15,7 +15,10 @@
 #include <CGAL/Random.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,10 +29,11 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 30;
-  double energy_tolerance = 1e-4;   // relative decrease of the capped energy per iteration
+  double energy_tolerance = 1e-3;   // relative decrease of the capped energy per iteration
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
+  int proposals_per_patch = 2;
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
@@ -77,7 +81,7 @@ public:
       m_result(result),
       m_start(start),
       m_random(parameters.random_seed),
-      m_selection(state.mesh, parameters.selection),
+      m_selection(state.mesh, sized(parameters.selection, state.mesh)),
       m_for_each([&state, &parameters]() {
         return Workspace{Patch_builder(state.mesh),
                          Flattened_mover(state.reference, parameters.mover), Acceptance_test()};
@@ -116,8 +120,10 @@ public:
         return;
       m_is_active.assign(mesh.number_of_faces(), 0);
       const bool moves = activate([&](int v) { return m_moved[v] != 0; }, 1);
-      if(!moves || before.capped_energy - after.capped_energy <
-                     m_parameters.energy_tolerance * before.capped_energy)
+      const bool unfolds = after.flips + after.fold_edges < before.flips + before.fold_edges;
+      const bool falls = before.capped_energy - after.capped_energy >
+                         m_parameters.energy_tolerance * before.capped_energy;
+      if(!moves || !(unfolds || falls))
       {
         m_result.status = Status::converged;
         return;
@@ -127,6 +133,16 @@ public:
   }
 
 private:
+  // Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
+  // as fast as their number.
+  static Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
+  {
+    if(selection.maximum_patch_size == 0)
+      selection.maximum_patch_size =
+        (std::min)(4000, (std::max)(400, int(6 * std::sqrt(double(mesh.number_of_faces())))));
+    return selection;
+  }
+
   double lower_half_mean() const
   {
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
@@ -193,6 +209,7 @@ private:
     for(std::size_t i = seeds.size(); i > 1; --i)
       std::swap(seeds[i - 1], seeds[m_random.get_int(0, int(i))]);
     m_is_untouched = m_is_active;
+    m_selection.forget_visits();
 
     while(true)
     {
@@ -203,13 +220,16 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      solve_round(patches);
+      if(!solve_round(patches))
+        return false;
     }
   }
 
+  bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
+
   bool may_go_on()
   {
-    if(seconds_since(m_start) > m_parameters.maximum_running_time)
+    if(!has_time())
       m_result.status = Status::time_limit;
     else if(!m_visitor.go_further())
       m_result.status = Status::interrupted;
@@ -283,19 +303,31 @@ private:
     }
   }
 
-  void solve_round(const std::vector<std::vector<int>>& patches)
+  // false if it was cut short; what was solved by then is committed
+  bool solve_round(const std::vector<std::vector<int>>& patches)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
     std::vector<Solved_patch> solved(patches.size());
-    m_for_each(patches.size(),
-               [&](Workspace& w, std::size_t i) { solve(w, patches[i], solved[i]); });
+    const bool is_sequential = std::is_same<ConcurrencyTag, CGAL::Sequential_tag>::value;
+    std::atomic<bool> stops(false);
+    m_for_each(patches.size(), [&](Workspace& w, std::size_t i) {
+      // only the calling thread may ask the visitor
+      if(!stops && !(is_sequential ? may_go_on() : has_time()))
+        stops = true;
+      if(!stops)
+        solve(w, patches[i], solved[i]);
+    });
     for(Solved_patch& s : solved)
-    {
-      commit(s);
-      report(s);
-    }
+      if(!s.patch.faces.empty())
+      {
+        commit(s);
+        report(s);
+      }
     m_visitor.on_round_end();
+    if(stops && !is_sequential)
+      m_result.status = Status::time_limit;
+    return !stops;
   }
 
   // reads the state, does not write it
@@ -315,11 +347,28 @@ private:
     s.optimization_time = w.mover.optimization_time();
     if(!proposes)
       return;
-    start = std::chrono::steady_clock::now();
-    s.decision = w.acceptance.decide(s.patch, m_state, w.mover, m_density, m_worst_allowed);
-    if(s.decision.accepted)
-      s.placed = w.acceptance.candidate();
-    s.acceptance_time += seconds_since(start);
+    // one flattening serves several proposals: it costs more than they do
+    for(int pass = 0; pass < m_parameters.proposals_per_patch; ++pass)
+    {
+      if(pass > 0 && !w.mover.propose_again(s.patch, w.acceptance.steps(), m_density))
+        break;
+      start = std::chrono::steady_clock::now();
+      const Acceptance_test::Decision decision =
+        w.acceptance.decide(s.patch, m_state, w.mover, m_density, m_worst_allowed);
+      if(pass == 0)
+        s.decision = decision;
+      if(decision.accepted)
+      {
+        s.decision.after = decision.after;
+        s.patch.placed = w.acceptance.candidate();
+      }
+      s.acceptance_time += seconds_since(start);
+      const double gain = decision.before.energy - decision.after.energy;
+      if(!decision.accepted || gain < m_parameters.energy_tolerance * decision.before.energy)
+        break;
+    }
+    s.optimization_time = w.mover.optimization_time();
+    s.placed = s.patch.placed;
   }
 
   // folds of the edges between the patch and faces outside it, as the state is now

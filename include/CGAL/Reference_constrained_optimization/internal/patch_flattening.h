@@ -44,6 +44,7 @@ struct Flattening
 struct Flattening_parameters
 {
   bool use_conformal = true;
+  double conformal_limit = 20; // distortion of a conformal map beyond which it is no start
   int maximum_descent_steps = 25;
 };
 
@@ -71,24 +72,35 @@ public:
       return flattening;
     build(triangles, points);
 
-    if(parameters.use_conformal && run(SMP::LSCM_parameterizer_3<Surface_mesh>(), flattening) &&
-       is_usable(triangles, flattening.positions))
-      flattening.path = Flattening_path::conformal;
-    else if((run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
-                 flattening) &&
-             is_usable(triangles, flattening.positions)) ||
-            (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(),
-                 flattening) &&
-             is_usable(triangles, flattening.positions)))
+    // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
+    // accurate: only nearly isometric ones are taken as they are.
+    const double nearly_isometric = 4.05;
+    const bool is_conformal = parameters.use_conformal &&
+                              run(SMP::LSCM_parameterizer_3<Surface_mesh>(), flattening) &&
+                              is_usable(triangles, flattening.positions);
+    if(is_conformal)
+      flattening.distortion = distortion(triangles, flattening.positions);
+    const bool is_usable_start =
+      (is_conformal && flattening.distortion < parameters.conformal_limit) ||
+      (run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
+           flattening) &&
+       is_usable(triangles, flattening.positions)) ||
+      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), flattening) &&
+       is_usable(triangles, flattening.positions));
+    if(!is_usable_start)
+      return flattening;
+    flattening.path = is_conformal && flattening.distortion < parameters.conformal_limit
+                        ? Flattening_path::conformal
+                        : Flattening_path::convex_border;
+    if(flattening.path == Flattening_path::convex_border ||
+       flattening.distortion > nearly_isometric)
     {
+      const std::vector<Vector_2> start = flattening.positions;
       descend(triangles, flattening.positions, parameters.maximum_descent_steps);
       if(!is_locally_injective(triangles, flattening.positions))
-        return flattening;
-      flattening.path = Flattening_path::convex_border;
+        flattening.positions = start;
+      flattening.distortion = distortion(triangles, flattening.positions);
     }
-    else
-      return flattening;
-    flattening.distortion = distortion(triangles, flattening.positions);
     return flattening;
   }
 
@@ -184,7 +196,8 @@ private:
       problem.metric.push_back(Eigen::Matrix2d::Identity());
     }
     problem.is_free.assign(u.size(), 1);
-    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, maximum_steps, 1e-3);
+    m_optimizer.analyze(problem);
+    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, maximum_steps, 1e-2);
   }
 
   double distortion(const Indexed_mesh& triangles, const std::vector<Vector_2>& u) const

@@ -21,7 +21,7 @@ namespace internal {
 struct Selection_parameters
 {
   double developability_threshold = 0.25; // epsilon_d
-  int maximum_patch_size = 1000;          // in faces
+  int maximum_patch_size = 0; // in faces; 0: chosen by the size of the mesh
   int exempt_size = 100; // the first faces of a patch need not fit the proxy
 };
 
@@ -126,12 +126,15 @@ public:
     return patch;
   }
 
-  // The faces of the last patch grown that lie outside the 2-ring of its boundary; an edge of the
-  // mesh's own border is no boundary here. The seed is always among them.
+  // The faces of the last patch grown that are done with. That is every face outside the 2-ring of
+  // its boundary (an edge of the mesh's own border is no boundary here), and always the seed. On
+  // parts as thin as a few faces, where every disk is cut open, no face is ever outside: a face is
+  // also done with when all its vertices were inside two patches since `forget_visits()`.
   std::vector<int> touched(const std::vector<int>& patch)
   {
     ++m_ring_stamp;
     m_ring.resize(m_mesh.number_of_vertices(), 0);
+    m_visits.resize(m_mesh.number_of_faces(), 0);
     const auto in_patch = [&](int f) { return m_face_stamp[f] == m_stamp; };
     for(const int f : patch)
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
@@ -153,10 +156,16 @@ public:
         }
     std::vector<int> result;
     for(const int f : patch)
-      if(f == patch.front() || !touches(f, 2 * m_ring_stamp - 1))
+    {
+      if(!touches(f, 2 * m_ring_stamp))
+        ++m_visits[f];
+      if(f == patch.front() || !touches(f, 2 * m_ring_stamp - 1) || m_visits[f] >= 2)
         result.push_back(f);
+    }
     return result;
   }
+
+  void forget_visits() { m_visits.assign(m_mesh.number_of_faces(), 0); }
 
 private:
   // the best fit among the 1-rings of the seed's vertices
@@ -183,7 +192,7 @@ private:
 
   const Indexed_mesh& m_mesh;
   Selection_parameters m_parameters;
-  std::vector<int> m_face_stamp, m_vertex_stamp, m_ring;
+  std::vector<int> m_face_stamp, m_vertex_stamp, m_ring, m_visits;
   int m_stamp = 0, m_ring_stamp = 0;
 };
 

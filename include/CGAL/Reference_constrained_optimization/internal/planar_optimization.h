@@ -48,6 +48,20 @@ public:
     double initial_energy = 0, final_energy = 0;
   };
 
+  // numbers the unknowns of a problem and factorizes its pattern; `minimize` may then be called any
+  // number of times for problems with the same triples and free vertices
+  void analyze(const Planar_problem& problem)
+  {
+    m_variable.assign(problem.is_free.size(), -1);
+    m_size = 0;
+    for(std::size_t i = 0; i < problem.is_free.size(); ++i)
+      if(problem.is_free[i])
+        m_variable[i] = m_size++;
+    if(m_size > 0)
+      m_system.analyze(m_variable, m_size, problem.triples);
+    m_right.resize(2 * m_size);
+  }
+
   // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
   // energy by less than `tolerance` times it.
   template <typename Density>
@@ -57,16 +71,9 @@ public:
                    int maximum_steps,
                    double tolerance)
   {
-    m_variable.assign(u.size(), -1);
-    int n = 0;
-    for(std::size_t i = 0; i < u.size(); ++i)
-      if(problem.is_free[i])
-        m_variable[i] = n++;
     Outcome outcome;
-    if(n == 0)
+    if(m_size == 0)
       return outcome;
-    m_system.analyze(m_variable, n, problem.triples);
-    m_right.resize(2 * n);
 
     double energy = assemble(problem, density, u);
     outcome.initial_energy = outcome.final_energy = energy;
@@ -189,6 +196,7 @@ private:
     return step;
   }
 
+  int m_size = 0;
   Newton_system m_system;
   std::vector<int> m_variable;
   Eigen::VectorXd m_right, m_direction;

@@ -61,7 +61,9 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
                      "developability_threshold");
   p.selection.maximum_patch_size = choose_parameter(
     get_parameter(np, internal_np::maximum_patch_size), p.selection.maximum_patch_size);
-  checked_positive(p.selection.maximum_patch_size, "maximum_patch_size");
+  if(p.selection.maximum_patch_size < 0)
+    throw Invalid_input("maximum_patch_size must not be negative, but is " +
+                        std::to_string(p.selection.maximum_patch_size));
   return p;
 }
 

@@ -1,0 +1,152 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
+
+#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * holds figures of \f$ (\|J\|_F^2 + \|J^{-1}\|_F^2) / 2 \f$ over the triangles of a map between two
+ * meshes: 2 at an isometry, without unit.
+ */
+struct Distortion_statistics
+{
+  double mean = 0;          ///< mean over the triangles.
+  double median = 0;        ///< half of the triangles have at most this.
+  double percentile_99 = 0; ///< 99 of 100 triangles have at most this.
+  double maximum = 0;       ///< largest value.
+  /// triangles without area in one mesh only or in both; their distortion counts as infinite.
+  std::size_t number_of_degenerate_triangles = 0;
+};
+
+namespace internal {
+
+// the edge vectors of a triangle in its own plane, as columns
+inline Eigen::Matrix2d planar_triangle(const Vector_3& a, const Vector_3& b, const Vector_3& c)
+{
+  const Vector_3 u = b - a, v = c - a;
+  const double length = u.norm();
+  Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
+  if(length > 0)
+    m << length, u.dot(v) / length, 0, u.cross(v).norm() / length;
+  return m;
+}
+
+// whether face f has the same vertices in the same cyclic order in both meshes
+inline bool is_same_face(const Indexed_mesh& mesh, const Indexed_mesh& other, int f)
+{
+  const int degree = mesh.degree(f);
+  for(int shift = 0; degree == other.degree(f) && shift < degree; ++shift)
+  {
+    bool is_same = true;
+    for(int i = 0; i < degree && is_same; ++i)
+      is_same = mesh.corner_vertex[mesh.face_begin[f] + i] ==
+                other.corner_vertex[other.face_begin[f] + (i + shift) % degree];
+    if(is_same)
+      return true;
+  }
+  return false;
+}
+
+} // namespace internal
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * computes how much the piecewise linear map from one mesh to another of the same connectivity
+ * distorts, and returns the figures of it.
+ *
+ * For every triangle, \f$ J \f$ is the Jacobian of the affine map from the source's triangle to the
+ * mesh's, after both meshes were scaled to the same area; its value is
+ * \f$ (\|J\|_F^2 + \|J^{-1}\|_F^2) / 2 \f$. Quads are split, in both meshes along the diagonal that
+ * is shorter in the source. All triangles weigh the same.
+ *
+ * \param source the mesh with the shapes at rest. Faces and vertices of the two meshes correspond
+ *        by their positions in `faces()` and `vertices()`.
+ * \param mesh the mesh
+ * \param np_source the parameter `vertex_point_map` of `source`
+ * \param np the parameter `vertex_point_map` of `mesh`
+ *
+ * \throws Invalid_input if the meshes do not correspond or one of them has no area.
+ */
+template <typename SourceMesh,
+          typename FaceGraph,
+          typename NamedParametersSource = parameters::Default_named_parameters,
+          typename NamedParameters = parameters::Default_named_parameters>
+Distortion_statistics
+distortion_statistics(const SourceMesh& source,
+                      const FaceGraph& mesh,
+                      const NamedParametersSource& np_source = parameters::default_values(),
+                      const NamedParameters& np = parameters::default_values())
+{
+  const internal::Mesh_copy from = internal::read_measured_mesh(source, np_source, "source");
+  const internal::Mesh_copy to = internal::read_measured_mesh(mesh, np, "mesh");
+  if(from.points.size() != to.points.size() ||
+     from.mesh.number_of_faces() != to.mesh.number_of_faces())
+    throw Invalid_input("source and mesh: the numbers of vertices or faces differ");
+  const double from_area = internal::surface_area(from.mesh, from.points);
+  const double to_area = internal::surface_area(to.mesh, to.points);
+  if(!(from_area > 0) || !(to_area > 0))
+    throw Invalid_input("source and mesh: one of them has no area");
+  const double scale = std::sqrt(from_area / to_area);
+
+  Distortion_statistics result;
+  std::vector<double> values;
+  double sum = 0;
+  for(int f = 0; f < from.mesh.number_of_faces(); ++f)
+  {
+    if(!internal::is_same_face(from.mesh, to.mesh, f))
+      throw Invalid_input("source and mesh: face " + std::to_string(f) +
+                          " does not have the same vertices in both");
+    for(const std::array<int, 3>& t : internal::split_face(from.mesh, from.points, f))
+    {
+      std::array<int, 3> v;
+      for(int i = 0; i < 3; ++i)
+        v[i] = from.mesh.corner_vertex[t[i]];
+      const Eigen::Matrix2d rest =
+        internal::planar_triangle(from.points[v[0]], from.points[v[1]], from.points[v[2]]);
+      const Eigen::Matrix2d shape =
+        scale * internal::planar_triangle(to.points[v[0]], to.points[v[1]], to.points[v[2]]);
+      double value = std::numeric_limits<double>::infinity();
+      if(rest.determinant() > 0 && shape.determinant() > 0)
+        value =
+          0.5 * ((shape * rest.inverse()).squaredNorm() + (rest * shape.inverse()).squaredNorm());
+      if(!std::isfinite(value))
+        ++result.number_of_degenerate_triangles;
+      values.push_back(value);
+      sum += value;
+    }
+  }
+  std::sort(values.begin(), values.end());
+  // the smallest value that the given share of the triangles does not exceed
+  const auto quantile = [&](double share) {
+    return values[std::size_t(std::ceil(share * double(values.size()))) - 1];
+  };
+  result.mean = sum / double(values.size());
+  result.median = quantile(0.5);
+  result.percentile_99 = quantile(0.99);
+  result.maximum = values.back();
+  return result;
+}
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H

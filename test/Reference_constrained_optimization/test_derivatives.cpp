@@ -1,0 +1,626 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Densities and their derivatives, the Newton system, the flip-free step, and planar optimization.
+
+#include "test_util.h"
+
+#include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
+#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+
+#include <Eigen/Dense>
+
+#include <limits>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+using namespace rco_test;
+
+typedef Eigen::Matrix2d Matrix_2;
+typedef Eigen::Matrix4d Matrix_4;
+typedef Eigen::Vector4d Vector_4;
+
+Matrix_2 rotation(double angle)
+{
+  Matrix_2 r;
+  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  return r;
+}
+
+Matrix_2 with_singular_values(double s1, double s2, Random& random)
+{
+  const Matrix_2 u = rotation(random(0, 2 * pi)), v = rotation(random(0, 2 * pi));
+  return u * Vector_2(s1, s2).asDiagonal() * v;
+}
+
+// derivatives in the four entries, in column-major order, by central differences of fourth order
+template <typename Function>
+auto differences(const Matrix_2& J, double h, const Function& f)
+{
+  typedef decltype(f(J)) Value;
+  std::array<Value, 4> d;
+  for(int i = 0; i < 4; ++i)
+  {
+    const auto at = [&](double t) {
+      Matrix_2 K = J;
+      K.data()[i] += t;
+      return f(K);
+    };
+    d[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+  }
+  return d;
+}
+
+Vector_4 as_vector(const Matrix_2& m) { return Eigen::Map<const Vector_4>(m.data()); }
+
+Matrix_4 eigen_projection(const Matrix_4& h)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(h);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+// the part of a density that the concept asks for, to reach the general projection
+template <typename Density>
+struct Plain_density
+{
+  const Density& density;
+  double value(const Matrix_2& J) const { return density.value(J); }
+  Matrix_2 gradient(const Matrix_2& J) const { return density.gradient(J); }
+  Matrix_4 hessian(const Matrix_2& J) const { return density.hessian(J); }
+};
+
+template <typename Density>
+void test_derivatives_at(const Density& density, const Matrix_2& J, double h)
+{
+  const Vector_4 gradient = as_vector(density.gradient(J));
+  const Matrix_4 hessian = density.hessian(J);
+  const double scale = J.norm();
+
+  const auto slope = differences(J, h, [&](const Matrix_2& K) { return density.value(K); });
+  const auto bend = differences(J, h, [&](const Matrix_2& K) { return as_vector(density.gradient(K)); });
+  // rounding of the differences: values are known to about 1e-15 of themselves
+  const double value_noise = 1e-14 * std::abs(density.value(J)) / h;
+  const double gradient_noise = 1e-14 * gradient.norm() / h;
+  const double first = 2e-6 * (gradient.norm() + 1e-3 * hessian.norm() * scale) + value_noise;
+  const double second = 2e-5 * (hessian.norm() + gradient.norm() / scale) + gradient_noise;
+  for(int i = 0; i < 4; ++i)
+  {
+    RCO_CHECK_NEAR(gradient(i), slope[i], first);
+    for(int j = 0; j < 4; ++j)
+      RCO_CHECK_NEAR(hessian(j, i), bend[i](j), second);
+  }
+  RCO_CHECK_LESS_EQUAL((hessian - hessian.transpose()).norm(), 1e-12 * hessian.norm());
+
+  Vector_4 g, g_plain;
+  Matrix_4 projected, projected_plain;
+  const double value = density.projected_derivatives(J, g, projected);
+  RCO_CHECK_NEAR(value, density.value(J), 1e-12 * std::abs(value));
+  RCO_CHECK_LESS_EQUAL((g - gradient).norm(), 1e-12 * gradient.norm());
+  const Matrix_4 expected = eigen_projection(hessian);
+  RCO_CHECK_LESS_EQUAL((projected - expected).norm(), 1e-10 * hessian.norm());
+  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(projected);
+  RCO_CHECK_LESS_EQUAL(-1e-12 * hessian.norm(), solver.eigenvalues().minCoeff());
+
+  const Plain_density<Density> plain{density};
+  const double plain_value = internal::projected_derivatives(plain, J, g_plain, projected_plain, 0);
+  RCO_CHECK_NEAR(plain_value, value, 1e-12 * std::abs(value));
+  RCO_CHECK_LESS_EQUAL((g_plain - gradient).norm(), 1e-12 * gradient.norm());
+  RCO_CHECK_LESS_EQUAL((projected_plain - expected).norm(), 1e-10 * hessian.norm());
+}
+
+template <typename Density>
+void test_general(const Density& density)
+{
+  Random random(1);
+  for(int i = 0; i < 300; ++i)
+  {
+    Matrix_2 J;
+    J << random(-2, 2), random(-2, 2), random(-2, 2), random(-2, 2);
+    const double value = density.value(J);
+    RCO_CHECK(std::isfinite(value));
+    const Matrix_2 turned = rotation(random(0, 7)) * J * rotation(random(0, 7));
+    RCO_CHECK_NEAR(density.value(turned), value, 1e-9 * std::abs(value));
+  }
+  // nothing becomes infinite: no area, no extent, inverted, large and small
+  const double sizes[] = {0, 1e-40, 1e-9, 1, 1e9};
+  for(const double a : sizes)
+    for(const double b : {-1., -1e-9, 0., 1e-9, 1.})
+    {
+      const Matrix_2 J = with_singular_values(a, a * b, random);
+      Vector_4 g;
+      Matrix_4 h;
+      RCO_CHECK(std::isfinite(density.value(J)));
+      RCO_CHECK(density.gradient(J).allFinite());
+      RCO_CHECK(density.hessian(J).allFinite());
+      RCO_CHECK(std::isfinite(density.projected_derivatives(J, g, h)));
+      RCO_CHECK(g.allFinite() && h.allFinite());
+    }
+  // inversion costs more than any sound shape
+  for(const double s : {0.5, 0.2, 0.01})
+    RCO_CHECK_LESS(density.value(with_singular_values(1, s, random)),
+                   density.value(with_singular_values(1, -s, random)));
+}
+
+// value, gradient and Hessian do not jump where J crosses `at`
+template <typename Density>
+void test_smooth_at(const Density& density, const Matrix_2& at, const Matrix_2& direction)
+{
+  const double h = 1e-9;
+  const Matrix_2 below = at - h * direction, above = at + h * direction;
+  const Matrix_2 g = density.gradient(at);
+  RCO_CHECK_NEAR(density.value(below), density.value(above), 4 * h * g.norm());
+  RCO_CHECK_LESS_EQUAL((density.gradient(below) - density.gradient(above)).norm(), 1e-5 * g.norm());
+  const Matrix_4 H = density.hessian(at);
+  RCO_CHECK_LESS_EQUAL((density.hessian(below) - density.hessian(above)).norm(), 1e-5 * H.norm());
+}
+
+void test_exponential_mips(double k)
+{
+  const Scope scope("Exponential_MIPS_density, k = " + std::to_string(k));
+  const RCO::Exponential_MIPS_density density(k);
+  RCO_CHECK_EQUAL(density.exponent_factor(), k);
+  Random random(2);
+  for(const double t : {1., 1 - 1e-7, 0.9, 0.5, 0.3, 0.2, 0.1, 0.04, 0.02, 0.01, 1e-4, 0., -0.01, -0.1,
+                        -0.5, -0.9, -1.})
+    for(int i = 0; i < 4; ++i)
+    {
+      const double size = random(0.2, 3);
+      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(t * size));
+      test_derivatives_at(density, with_singular_values(size, t * size, random), 1e-4 * size);
+    }
+  for(int i = 0; i < 20; ++i)
+  {
+    const double size = random(1e-3, 1e3);
+    const Matrix_2 similarity = with_singular_values(size, size, random);
+    RCO_CHECK_NEAR(density.value(similarity), std::exp(2 * k), 1e-12 * std::exp(2 * k));
+    RCO_CHECK_LESS_EQUAL(size * density.gradient(similarity).norm(), 1e-7 * std::exp(2 * k));
+    const double t = random(-1, 1);
+    const Matrix_2 J = with_singular_values(1, t, random);
+    RCO_CHECK_LESS_EQUAL(std::exp(2 * k) * (1 - 1e-12), density.value(J));
+    RCO_CHECK_NEAR(density.value(size * J), density.value(J), 1e-9 * density.value(J));
+    if(J.squaredNorm() / J.determinant() * k < 2 * k + 18 && J.determinant() > 0)
+      RCO_CHECK_NEAR(density.value(J), std::exp(k * J.squaredNorm() / J.determinant()),
+                     1e-9 * density.value(J));
+  }
+  // the cap: t + 1/t = (2k + 18) / k
+  const double ratio = (2 * k + 18) / k;
+  const double t = 2 / (ratio + std::sqrt(ratio * ratio - 4));
+  const Matrix_2 at = Vector_2(1, t).asDiagonal();
+  RCO_CHECK_NEAR(density.value(at), std::exp(2 * k + 18), 1e-9 * std::exp(2 * k + 18));
+  test_smooth_at(density, at, Vector_2(0, 1).asDiagonal());
+  // beyond the cap it grows, but slower than the exponential
+  const Matrix_2 beyond = Vector_2(1, 0.25 * t).asDiagonal();
+  RCO_CHECK_LESS(density.value(at), density.value(beyond));
+  RCO_CHECK_LESS(std::log(density.value(beyond)), k * (0.25 * t + 4 / t));
+  test_general(density);
+}
+
+void test_symmetric_dirichlet()
+{
+  const Scope scope("Symmetric_Dirichlet_density");
+  const RCO::Symmetric_Dirichlet_density density;
+  Random random(3);
+  for(const double s : {1., 1 - 1e-7, 0.8, 0.3, 0.1, 0.03, 0.015, 0.001, 0., -0.01, -0.1, -0.9})
+    for(const double size : {0.01, 0.5, 1., 2.})
+    {
+      // a mirror image is a ridge of this density, and the threshold a jump of third derivatives
+      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(s * size));
+      const double gap = (std::min)(std::abs(size - 0.02), std::abs(s * size - 0.02));
+      const double h = 1e-3 * (std::min)((std::max)(gap, 1e-4), (std::max)(std::abs(s * size), 0.02));
+      test_derivatives_at(density, with_singular_values(size, s * size, random), h);
+    }
+  for(int i = 0; i < 20; ++i)
+  {
+    RCO_CHECK_NEAR(density.value(rotation(i)), 4., 1e-12);
+    RCO_CHECK_LESS_EQUAL(density.gradient(rotation(i)).norm(), 1e-12);
+    Matrix_2 J = with_singular_values(random(0.1, 3), random(0.1, 3), random);
+    RCO_CHECK_NEAR(density.value(J), J.squaredNorm() + J.inverse().squaredNorm(),
+                   1e-9 * density.value(J));
+    RCO_CHECK_NEAR(density.value(J), density.value(J.inverse()), 1e-9 * density.value(J));
+  }
+  for(const double other : {0.5, 1., 3.})
+    test_smooth_at(density, Vector_2(other, 0.02).asDiagonal(), Vector_2(0, 1).asDiagonal());
+  test_general(density);
+}
+
+// ------------------------------------------------------------------------------------------
+
+void test_time_of_collapse()
+{
+  const Scope scope("time_of_collapse");
+  Random random(4);
+  const double infinity = std::numeric_limits<double>::infinity();
+  int finite = 0, infinite = 0;
+  for(int i = 0; i < 4000; ++i)
+  {
+    Matrix_2 edges, motion;
+    do
+      edges << random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1);
+    while(!(edges.determinant() > 1e-3));
+    motion << random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1);
+    switch(i % 8)
+    {
+    case 1: // one corner moves
+      motion.col(0).setZero();
+      break;
+    case 2: // all motions parallel
+      motion.row(1) = 0.5 * motion.row(0);
+      break;
+    case 3: // shrinking to a point
+      motion = -random(0.1, 2) * edges;
+      break;
+    case 4: // growing
+      motion = random(0.1, 2) * edges;
+      break;
+    case 5: // turning about the first corner
+      motion = rotation(pi / 2) * edges;
+      break;
+    case 6:
+      motion *= 1e-6;
+      break;
+    case 7:
+      motion *= 1e6;
+      break;
+    default:
+      break;
+    }
+    const double t = internal::time_of_collapse(edges, motion);
+    RCO_CHECK(t > 0);
+    const auto det = [&](double s) { return (edges + s * motion).determinant(); };
+    if(t < infinity)
+    {
+      ++finite;
+      const double size = (edges + t * motion).squaredNorm() + edges.squaredNorm();
+      // a double root is found to half the digits
+      RCO_CHECK_LESS_EQUAL(std::abs(det(t)), 1e-9 * size);
+    }
+    else
+      ++infinite;
+    const double end = t < infinity ? t * (1 - 1e-6) : 1e4 * edges.norm() / motion.norm();
+    for(int s = 0; s < 200; ++s)
+    {
+      const double part = (s + 1) / 200.;
+      const double at = t < infinity ? end * part : end * std::pow(part, 6);
+      RCO_CHECK_LESS(0., det(at));
+    }
+  }
+  RCO_CHECK(finite > 500 && infinite > 500);
+  const Matrix_2 unit = Matrix_2::Identity(), none = Matrix_2::Zero();
+  RCO_CHECK_EQUAL(internal::time_of_collapse(unit, none), infinity);
+  Matrix_2 down = none;
+  down(1, 1) = -2;
+  RCO_CHECK_NEAR(internal::time_of_collapse(unit, down), 0.5, 1e-15);
+}
+
+void test_newton_system()
+{
+  const Scope scope("Newton_system");
+  Random random(5);
+  const Shape grid = plane_grid(5, 4);
+  const Indexed_mesh mesh = indexed(grid);
+  const int number_of_vertices = int(grid.points.size());
+  std::vector<std::array<int, 3>> triples;
+  for(const auto& f : grid.faces)
+    triples.push_back({{f[0], f[1], f[2]}});
+  triples.push_back(triples.front()); // elements may overlap, as those of quads do
+
+  internal::Newton_system system;
+  for(int trial = 0; trial < 3; ++trial) // an object is used for patch after patch
+  {
+    std::vector<int> variable(number_of_vertices, -1);
+    int n = 0;
+    for(int v = 0; v < number_of_vertices; ++v)
+      if(trial == 0 || random() < 0.6)
+        variable[v] = n++;
+    // numbers in another order than the vertices'
+    if(trial == 2)
+      for(int& v : variable)
+        v = v < 0 ? v : n - 1 - v;
+    system.analyze(variable, n, triples);
+    for(int repeat = 0; repeat < 2; ++repeat)
+    {
+      system.set_zero();
+      Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+      for(std::size_t e = 0; e < triples.size(); ++e)
+      {
+        Eigen::Matrix<double, 6, 6> root;
+        for(int i = 0; i < 36; ++i)
+          root.data()[i] = random(-1, 1);
+        const Eigen::Matrix<double, 6, 6> h = root * root.transpose();
+        for(int i = 0; i < 3; ++i)
+        {
+          const int j = (i + 1) % 3, a = variable[triples[e][i]], b = variable[triples[e][j]];
+          const Matrix_2 diagonal = h.block<2, 2>(2 * i, 2 * i), side = h.block<2, 2>(2 * i, 2 * j);
+          if(a < 0)
+            continue;
+          system.add_diagonal(a, diagonal);
+          dense.block<2, 2>(2 * a, 2 * a) += diagonal;
+          if(b < 0)
+            continue;
+          system.add_side(int(e), i, a, b, side);
+          dense.block<2, 2>(2 * a, 2 * b) += side;
+          dense.block<2, 2>(2 * b, 2 * a) += side.transpose();
+        }
+      }
+      Eigen::VectorXd right(2 * n), solution;
+      for(int i = 0; i < 2 * n; ++i)
+        right(i) = random(-1, 1);
+      RCO_CHECK(system.solve(right, solution));
+      const Eigen::VectorXd expected = dense.fullPivLu().solve(right);
+      RCO_CHECK_LESS_EQUAL((solution - expected).norm(), 1e-5 * expected.norm());
+      RCO_CHECK_LESS_EQUAL((dense * solution - right).norm(), 1e-5 * right.norm());
+    }
+  }
+  // a free vertex that nothing holds does not spoil the others
+  system.analyze({0, 1, 2, 3}, 4, {{{0, 1, 2}}});
+  system.set_zero();
+  for(int i = 0; i < 3; ++i)
+    system.add_diagonal(i, 2 * Matrix_2::Identity());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(8), solution;
+  right.head<6>().setConstant(1);
+  RCO_CHECK(system.solve(right, solution));
+  RCO_CHECK_LESS_EQUAL((solution.head<6>() - 0.5 * right.head<6>()).norm(), 1e-6);
+  RCO_CHECK_LESS_EQUAL(solution.tail<2>().norm(), 1e-6);
+}
+
+// ------------------------------------------------------------------------------------------
+
+// triangles of a flat shape, whose rest shapes are equilateral
+internal::Planar_problem planar_problem(const Shape& shape, double edge)
+{
+  internal::Planar_problem problem;
+  Matrix_2 rest;
+  rest << edge, 0.5 * edge, 0, 0.5 * std::sqrt(3.) * edge;
+  for(const auto& f : shape.faces)
+  {
+    problem.triples.push_back({{f[0], f[1], f[2]}});
+    problem.rest_inverse.push_back(rest.inverse());
+    problem.metric.push_back(Matrix_2::Identity());
+  }
+  const Indexed_mesh mesh = indexed(shape);
+  for(const char border : mesh.is_border_vertex)
+    problem.is_free.push_back(!border);
+  return problem;
+}
+
+std::vector<Vector_2> planar_points(const Shape& shape)
+{
+  std::vector<Vector_2> u;
+  for(const Vector_3& p : shape.points)
+    u.push_back(p.head<2>());
+  return u;
+}
+
+template <typename Density>
+double
+energy_of(const internal::Planar_problem& p, const Density& density, const std::vector<Vector_2>& u)
+{
+  double sum = 0;
+  for(std::size_t e = 0; e < p.triples.size(); ++e)
+    sum += density.value(p.metric[e] * internal::Planar_problem::edges(u, p.triples[e]) *
+                         p.rest_inverse[e]);
+  return sum;
+}
+
+int number_inverted(const internal::Planar_problem& p, const std::vector<Vector_2>& u)
+{
+  int count = 0;
+  for(const auto& t : p.triples)
+    count += !(internal::Planar_problem::edges(u, t).determinant() > 0);
+  return count;
+}
+
+// A scrambled regular grid in a fixed border becomes regular again; seen through a linear map by
+// the metric, too.
+template <typename Density>
+void test_known_optimum(const Density& density, double best, const Matrix_2& map)
+{
+  const Shape regular = equilateral_grid(9, 8);
+  const Shape start = scrambled(regular, 0.35, 6, onto_plane);
+  internal::Planar_problem problem = planar_problem(regular, 1);
+  std::vector<Vector_2> u = planar_points(start), goal = planar_points(regular);
+  for(Vector_2& p : u)
+    p = map * p;
+  for(Vector_2& p : goal)
+    p = map * p;
+  for(Matrix_2& m : problem.metric)
+    m = map.inverse();
+
+  const std::vector<Vector_2> before = u;
+  internal::Planar_optimizer optimizer;
+  double energy = energy_of(problem, density, u);
+  for(int step = 0; step < 60; ++step)
+  {
+    const auto outcome = optimizer.minimize(problem, density, u, 1, 1e-14);
+    const double now = energy_of(problem, density, u);
+    RCO_CHECK_NEAR(outcome.initial_energy, energy, 1e-9 * energy);
+    RCO_CHECK_NEAR(outcome.final_energy, now, 1e-9 * now);
+    RCO_CHECK_LESS_EQUAL(now, energy);
+    RCO_CHECK_EQUAL(number_inverted(problem, u), 0);
+    energy = now;
+    if(outcome.steps == 0)
+      break;
+  }
+  RCO_CHECK_NEAR(energy / double(problem.triples.size()), best, 1e-7 * best);
+  for(std::size_t v = 0; v < u.size(); ++v)
+  {
+    RCO_CHECK_LESS((u[v] - goal[v]).norm(), 1e-4);
+    if(!problem.is_free[v])
+      RCO_CHECK(u[v] == before[v]);
+  }
+  // the same in one call
+  u = before;
+  const auto outcome = optimizer.minimize(problem, density, u, 60, 1e-14);
+  RCO_CHECK(outcome.steps > 2);
+  RCO_CHECK_NEAR(outcome.final_energy, energy, 1e-6 * energy);
+}
+
+// One Newton step against the same step written down densely: elements' projected Hessians and
+// gradients by the chain rule, with the derivatives of the Jacobian by differences (it is linear).
+template <typename Density>
+void test_newton_step(const Density& density)
+{
+  Random random(7);
+  const Shape regular = equilateral_grid(4, 4);
+  for(int trial = 0; trial < 10; ++trial)
+  {
+    const Shape start = scrambled(regular, 0.2 + 0.02 * trial, 8 + trial, onto_plane);
+    internal::Planar_problem problem = planar_problem(regular, 1);
+    for(Matrix_2& m : problem.metric)
+      m = with_singular_values(random(0.8, 1.2), random(0.8, 1.2), random);
+    for(Matrix_2& m : problem.rest_inverse)
+      m = m * with_singular_values(random(0.8, 1.2), random(0.8, 1.2), random);
+    const std::vector<Vector_2> u = planar_points(start);
+
+    std::vector<int> variable(u.size(), -1);
+    int n = 0;
+    for(std::size_t v = 0; v < u.size(); ++v)
+      if(problem.is_free[v])
+        variable[v] = n++;
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * n);
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+    {
+      const auto jacobian = [&](const std::vector<Vector_2>& w) -> Matrix_2 {
+        return problem.metric[e] * internal::Planar_problem::edges(w, problem.triples[e]) *
+               problem.rest_inverse[e];
+      };
+      Vector_4 g;
+      Matrix_4 h;
+      density.projected_derivatives(jacobian(u), g, h);
+      Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(4, 2 * n);
+      for(const int v : problem.triples[e])
+        for(int d = 0; d < 2 && variable[v] >= 0; ++d)
+        {
+          std::vector<Vector_2> w(u);
+          w[v](d) += 1;
+          chain.col(2 * variable[v] + d) = as_vector(jacobian(w) - jacobian(u));
+        }
+      gradient += chain.transpose() * g;
+      hessian += chain.transpose() * h * chain;
+    }
+    // the assembled gradient itself, by differences of the energy
+    for(int v = 0; v < int(u.size()); ++v)
+      for(int d = 0; d < 2 && variable[v] >= 0; ++d)
+      {
+        std::vector<Vector_2> low(u), high(u);
+        low[v](d) -= 1e-6;
+        high[v](d) += 1e-6;
+        const double slope =
+          (energy_of(problem, density, high) - energy_of(problem, density, low)) / 2e-6;
+        RCO_CHECK_NEAR(gradient(2 * variable[v] + d), slope, 1e-4 * (1 + gradient.norm()));
+      }
+    const Eigen::VectorXd expected = -hessian.ldlt().solve(gradient);
+
+    std::vector<Vector_2> moved(u);
+    internal::Planar_optimizer optimizer;
+    const auto outcome = optimizer.minimize(problem, density, moved, 1, 1e-14);
+    RCO_CHECK_EQUAL(outcome.steps, 1);
+    Eigen::VectorXd step(2 * n);
+    for(std::size_t v = 0; v < u.size(); ++v)
+      if(variable[v] >= 0)
+        step.segment<2>(2 * variable[v]) = moved[v] - u[v];
+    // the length may be cut, the direction not
+    const double part = step.dot(expected) / expected.squaredNorm();
+    RCO_CHECK(part > 1e-3 && part < 1 + 1e-6);
+    RCO_CHECK_LESS_EQUAL((step - part * expected).norm(), 1e-5 * step.norm());
+  }
+}
+
+// a vertex beyond the far side of its ring: the robust continuation brings it back
+template <typename Density>
+void test_untangling(const Density& density)
+{
+  const Shape regular = equilateral_grid(5, 5);
+  const internal::Planar_problem problem = planar_problem(regular, 1);
+  std::vector<Vector_2> u = planar_points(regular);
+  const std::vector<Vector_2> goal = u;
+  u[14] += Vector_2(1.3, 0.4);
+  RCO_CHECK_LESS(0, number_inverted(problem, u));
+  const double before = energy_of(problem, density, u);
+  internal::Planar_optimizer optimizer;
+  for(int step = 0; step < 100; ++step)
+    optimizer.minimize(problem, density, u, 1, 1e-14);
+  RCO_CHECK_LESS(energy_of(problem, density, u), before);
+  RCO_CHECK_EQUAL(number_inverted(problem, u), 0);
+  RCO_CHECK_LESS((u[14] - goal[14]).norm(), 1e-3);
+}
+
+template <typename Density>
+void test_planar_optimizer(const Density& density, double best, const std::string& name)
+{
+  const Scope scope("Planar_optimizer, " + name);
+  test_known_optimum(density, best, Matrix_2::Identity());
+  Matrix_2 map;
+  map << 1.5, 0.4, -0.2, 0.7;
+  test_known_optimum(density, best, map);
+  test_newton_step(density);
+  test_untangling(density);
+  // nothing is free, nothing moves
+  internal::Planar_problem problem = planar_problem(equilateral_grid(2, 2), 1);
+  problem.is_free.assign(problem.is_free.size(), 0);
+  std::vector<Vector_2> u = planar_points(equilateral_grid(2, 2));
+  const std::vector<Vector_2> before = u;
+  internal::Planar_optimizer optimizer;
+  RCO_CHECK_EQUAL(optimizer.minimize(problem, density, u, 10, 1e-9).steps, 0);
+  RCO_CHECK(u == before);
+}
+
+// ------------------------------------------------------------------------------------------
+
+void test_surface_metric()
+{
+  const Scope scope("surface metric");
+  Random random(9);
+  for(int i = 0; i < 500; ++i)
+  {
+    const Vector_3 a = random.in_cube(1), b = random.in_cube(1), c = random.in_cube(1);
+    const Vector_3 n = (b - a).cross(c - a);
+    const Vector_3 up = random.in_cube(1);
+    const Matrix_2 shape = internal::signed_shape(a, b, c, up);
+    // lengths and angle are kept, and so is the area but for its sign
+    RCO_CHECK_NEAR(shape.col(0).norm(), (b - a).norm(), 1e-12);
+    RCO_CHECK_NEAR(shape.col(1).norm(), (c - a).norm(), 1e-12);
+    RCO_CHECK_NEAR(shape.col(0).dot(shape.col(1)), (b - a).dot(c - a), 1e-12);
+    RCO_CHECK_NEAR(std::abs(shape.determinant()), n.norm(), 1e-12);
+    RCO_CHECK_EQUAL(shape.determinant() > 0, n.dot(up) > 0);
+    const Matrix_2 turned = internal::signed_shape(a, b, c, -up);
+    RCO_CHECK_NEAR(turned.determinant(), -shape.determinant(), 1e-12);
+
+    // a flattening that distorts a little
+    const Matrix_2 shape_up = internal::signed_shape(a, b, c, n);
+    const Matrix_2 plane = with_singular_values(random(0.5, 2), random(0.5, 2), random) * shape_up;
+    const Matrix_2 metric = internal::surface_metric(plane, shape_up, 3);
+    if(shape_up.determinant() > 0.02 * shape_up.squaredNorm() &&
+       plane.determinant() > 0.02 * plane.squaredNorm())
+      RCO_CHECK_LESS_EQUAL((metric * plane - shape_up).norm(), 1e-9);
+    // where one side is turned round there is no metric to speak of
+    RCO_CHECK(internal::surface_metric(plane, -shape_up * Vector_2(1, -1).asDiagonal(), 3) ==
+              3 * Matrix_2::Identity());
+  }
+  const Vector_3 o(0, 0, 0), x(1, 0, 0), up(0, 0, 1);
+  const Matrix_2 flat = internal::signed_shape(o, x, 2 * x, up);
+  RCO_CHECK(flat.allFinite() && flat.determinant() == 0);
+  const Matrix_2 point = internal::signed_shape(o, o, x, up);
+  RCO_CHECK(point.allFinite() && point.determinant() == 0);
+  RCO_CHECK(internal::surface_metric(Matrix_2::Identity(), flat, 2) == 2 * Matrix_2::Identity());
+  RCO_CHECK(internal::surface_metric(flat, Matrix_2::Identity(), 2) == 2 * Matrix_2::Identity());
+}
+
+int main()
+{
+  for(const double k : {0.5, 1., 4.})
+    test_exponential_mips(k);
+  test_symmetric_dirichlet();
+  test_time_of_collapse();
+  test_newton_system();
+  test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
+  test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.), "exponential MIPS, k = 0.5");
+  test_planar_optimizer(RCO::Symmetric_Dirichlet_density(), 4, "symmetric Dirichlet");
+  test_surface_metric();
+  return report();
+}

@@ -1,0 +1,470 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Flattening of patches, the checks on it, and location in the plane.
+
+#include "test_util.h"
+
+#include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
+#include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+using namespace rco_test;
+
+typedef CGAL::Exact_predicates_inexact_constructions_kernel Exact;
+
+Exact::Point_2 exact(const Vector_2& p) { return Exact::Point_2(p(0), p(1)); }
+
+bool is_positive(const Vector_2& a, const Vector_2& b, const Vector_2& c)
+{
+  return CGAL::orientation(exact(a), exact(b), exact(c)) == CGAL::LEFT_TURN;
+}
+
+// Local injectivity without rounding: all triangles are positive, and of the triangles at an inner
+// vertex exactly one holds the direction of the x-axis. (Counter-clockwise from a side below the
+// axis to one above it less than half a turn leads through the axis.)
+bool is_locally_injective_exactly(const Indexed_mesh& mesh, const std::vector<Vector_2>& u)
+{
+  std::vector<int> hits(u.size(), 0);
+  for(int t = 0; t < mesh.number_of_faces(); ++t)
+  {
+    const int* v = &mesh.corner_vertex[3 * t];
+    if(!is_positive(u[v[0]], u[v[1]], u[v[2]]))
+      return false;
+    for(int i = 0; i < 3; ++i)
+    {
+      const Vector_2 &o = u[v[i]], &a = u[v[(i + 1) % 3]], &b = u[v[(i + 2) % 3]];
+      hits[v[i]] += (a(1) < o(1) && b(1) > o(1)) || (a(1) == o(1) && a(0) > o(0));
+    }
+  }
+  for(std::size_t i = 0; i < u.size(); ++i)
+    if(!mesh.is_border_vertex[i] && hits[i] != 1)
+      return false;
+  return true;
+}
+
+double planar_area(const Indexed_mesh& mesh, const std::vector<Vector_2>& u)
+{
+  double sum = 0;
+  for(int t = 0; t < mesh.number_of_faces(); ++t)
+  {
+    const int* v = &mesh.corner_vertex[3 * t];
+    const Vector_2 a = u[v[1]] - u[v[0]], b = u[v[2]] - u[v[0]];
+    sum += 0.5 * (a(0) * b(1) - a(1) * b(0));
+  }
+  return sum;
+}
+
+struct Expected
+{
+  double distortion = 1e6;          // with both ways to flatten
+  double fallback_distortion = 1e6; // with the convex border alone
+  bool keeps_area = true;
+};
+
+// all that a flattening promises, by either way
+void test_flattening(const Shape& shape, const std::string& name, const Expected& expected)
+{
+  const Indexed_mesh mesh = indexed(shape);
+  internal::Patch_flattener flattener;
+  for(const bool use_conformal : {true, false})
+  {
+    const Scope scope("flattening of " + name + (use_conformal ? "" : ", convex border alone"));
+    internal::Flattening_parameters parameters;
+    parameters.use_conformal = use_conformal;
+    const internal::Flattening result = flattener.flatten(mesh, shape.points, parameters);
+    if(!RCO_CHECK(result.path != internal::Flattening_path::failed))
+      continue;
+    if(!use_conformal)
+      RCO_CHECK(result.path == internal::Flattening_path::convex_border);
+    if(!RCO_CHECK_EQUAL(result.positions.size(), shape.points.size()))
+      continue;
+    RCO_CHECK(is_locally_injective_exactly(mesh, result.positions));
+    RCO_CHECK(internal::is_locally_injective(mesh, result.positions));
+    // a free border moves during the descent, but no part of the patch shrinks to nothing
+    const double flat_area = planar_area(mesh, result.positions);
+    const double bound = use_conformal ? expected.distortion : expected.fallback_distortion;
+    if(expected.keeps_area)
+      RCO_CHECK_NEAR(flat_area / area(shape), 1., bound < 4.5 ? 0.05 : 0.3);
+    RCO_CHECK_LESS_EQUAL(4 - 1e-9, result.distortion);
+    RCO_CHECK_LESS_EQUAL(result.distortion, bound);
+    // the object keeps nothing of what it did before
+    internal::Patch_flattener fresh;
+    RCO_CHECK(fresh.flatten(mesh, shape.points, parameters).positions == result.positions);
+  }
+}
+
+// moved and scaled without any harm
+Shape displaced(Shape shape, double scale, const Vector_3& shift)
+{
+  for(Vector_3& p : shape.points)
+    p = scale * p + shift;
+  return shape;
+}
+
+Shape sphere_minus(int levels, const std::function<bool(const Vector_3&)>& drop)
+{
+  const Shape sphere = icosphere(levels);
+  return compacted(without_faces(sphere, [&](int f) {
+    const std::vector<int>& t = sphere.faces[f];
+    return drop((sphere.points[t[0]] + sphere.points[t[1]] + sphere.points[t[2]]) / 3);
+  }));
+}
+
+void test_flattenings()
+{
+  Expected isometric;
+  isometric.distortion = 4 + 1e-6;
+  isometric.fallback_distortion = 4.01;
+  Expected nearly = isometric;
+  nearly.distortion = 4.06;
+  nearly.fallback_distortion = 4.1;
+  const Expected any;
+
+  Shape single;
+  single.add(0, 0, 0);
+  single.add(3, 0, 1);
+  single.add(1, 2, 0);
+  single.triangle(0, 1, 2);
+  test_flattening(single, "one triangle", isometric);
+  test_flattening(plane_grid(1, 1), "two triangles", isometric);
+  test_flattening(plane_grid(12, 1), "a strip", isometric);
+  const Shape rough = scrambled(plane_grid(12, 9), 0.35, 1, onto_plane);
+  test_flattening(rough, "a plane", isometric);
+  test_flattening(displaced(rough, 1e-3, Vector_3(20, 30, 40)), "a small plane far away", isometric);
+  test_flattening(displaced(rough, 1e4, Vector_3(0, 0, 0)), "a large plane", isometric);
+
+  // developable: a tube slit open, covering nearly all round, and a cone
+  test_flattening(cylinder(40, 12, 0.5, 1, 2 * pi * 0.975), "most of a cylinder", isometric);
+  test_flattening(scrambled(cylinder(40, 12, 0.5, 1, 2 * pi * 0.975), 0.3, 2, onto_cylinder(0.5)),
+                  "most of a rough cylinder", nearly);
+  test_flattening(cone(40, 12, 0.6, 0.3, 1, 2 * pi * 0.97), "most of a cone", isometric);
+  test_flattening(compacted(without_faces(tetrahedron(), [](int f) { return f == 1; })),
+                  "three faces of a tetrahedron", any);
+
+  // nearly closed
+  Expected half;
+  half.distortion = 5;
+  half.fallback_distortion = 5;
+  test_flattening(sphere_minus(3, [](const Vector_3& c) { return c.z() < 0; }), "half a sphere", half);
+  for(const double height : {-0.8, -0.97, -0.99})
+    test_flattening(sphere_minus(3, [=](const Vector_3& c) { return c.z() < height; }),
+                    "a sphere open below " + std::to_string(height), any);
+  test_flattening(compacted(without_faces(icosphere(2), [](int f) { return f == 0; })),
+                  "a sphere without one face", any);
+  test_flattening(compacted(without_faces(cube(6), [](int f) { return f < 3; })), "a cube", any);
+  // a tower on a plane
+  Shape tower = plane_grid(16, 16);
+  for(Vector_3& p : tower.points)
+    p.z() = 1.5 * std::exp(-60 * (p - Vector_3(0.5, 0.5, p.z())).squaredNorm());
+  test_flattening(tower, "a tower", any);
+  // a saddle has too much border for the plane
+  Shape saddle = plane_grid(16, 16, 2);
+  for(Vector_3& p : saddle.points)
+    p.z() = (p.x() - 1) * (p.y() - 1) * 2;
+  test_flattening(saddle, "a saddle", any);
+
+  // triangles of little or no area
+  Shape stretched = plane_grid(10, 10);
+  for(Vector_3& p : stretched.points)
+    p.y() *= 1e-3;
+  Expected wider; // slivers may be given some width
+  wider.keeps_area = false;
+  test_flattening(stretched, "slivers", wider);
+  Shape degenerate = plane_grid(12, 12);
+  degenerate.points[13 * 5 + 5] = degenerate.points[13 * 5 + 6];
+  degenerate.points[13 * 9 + 3] = 0.5 * (degenerate.points[13 * 9 + 4] + degenerate.points[13 * 8 + 4]);
+  degenerate.points[13 * 3 + 9] = degenerate.points[13 * 3 + 10] = degenerate.points[13 * 4 + 9];
+  test_flattening(degenerate, "faces of no area", any);
+  // folded over in space: an inner vertex far out of its ring
+  Shape folded = plane_grid(10, 10);
+  folded.points[11 * 5 + 5] += Vector_3(0.25, 0.02, 0.001);
+  test_flattening(folded, "a fold", any);
+
+  const Scope scope("what cannot be flattened");
+  internal::Patch_flattener flattener;
+  Shape nothing = plane_grid(3, 3);
+  for(Vector_3& p : nothing.points)
+    p = Vector_3(1, 2, 3);
+  RCO_CHECK(flattener.flatten(indexed(nothing), nothing.points).path ==
+            internal::Flattening_path::failed);
+  const Shape closed = icosphere(1);
+  RCO_CHECK(flattener.flatten(indexed(closed), closed.points).path ==
+            internal::Flattening_path::failed);
+}
+
+// a ring that turns more often than once lies on itself in the plane: locally injective all the
+// same, and the walk stays where it is
+void test_overlap()
+{
+  for(const double turns : {1.5, 2.3})
+  {
+    const Scope scope("a ramp of " + std::to_string(turns) + " turns");
+    const int columns = int(24 * turns), rows = 3;
+    const Shape shape = ramp(columns, rows, turns);
+    const Indexed_mesh mesh = indexed(shape);
+    internal::Patch_flattener flattener;
+    const internal::Flattening flat = flattener.flatten(mesh, shape.points);
+    if(!RCO_CHECK(flat.path != internal::Flattening_path::failed))
+      continue;
+    const std::vector<Vector_2>& u = flat.positions;
+    RCO_CHECK(is_locally_injective_exactly(mesh, u));
+    RCO_CHECK(internal::is_locally_injective(mesh, u));
+    RCO_CHECK(!internal::has_simple_border(mesh, u));
+    RCO_CHECK_LESS(flat.distortion, 4.01);
+
+    // position along the ramp, in columns
+    const auto column = [&](int t) { return (t / 2) % columns; };
+    Random random(3);
+    int ambiguous = 0;
+    for(int i = 0; i < 3000; ++i)
+    {
+      const int goal = random.index(mesh.number_of_faces());
+      const Vector_3 b = random.barycentric();
+      const int* v = &mesh.corner_vertex[3 * goal];
+      const Vector_2 p = b(0) * u[v[0]] + b(1) * u[v[1]] + b(2) * u[v[2]];
+      int holding = 0;
+      for(int t = 0; t < mesh.number_of_faces(); ++t)
+      {
+        const int* w = &mesh.corner_vertex[3 * t];
+        holding += is_positive(u[w[0]], u[w[1]], p) && is_positive(u[w[1]], u[w[2]], p) &&
+                   is_positive(u[w[2]], u[w[0]], p);
+      }
+      ambiguous += holding > 1;
+      // from a triangle near by
+      int start = goal;
+      for(int step = 0; step < 4; ++step)
+      {
+        const int o = mesh.opposite[3 * start + random.index(3)];
+        if(o >= 0)
+          start = mesh.corner_face[o];
+      }
+      const internal::Planar_location location = internal::walk(mesh, u, p, start);
+      RCO_CHECK(location.triangle < 0 || std::abs(column(location.triangle) - column(goal)) <= 1);
+      if(start == goal)
+        RCO_CHECK_EQUAL(location.triangle, goal);
+    }
+    RCO_CHECK_LESS(500, ambiguous);
+  }
+}
+
+void test_injectivity_checks()
+{
+  const Scope scope("injectivity");
+  const Shape plane = plane_grid(4, 4);
+  const Indexed_mesh mesh = indexed(plane);
+  std::vector<Vector_2> u;
+  for(const Vector_3& p : plane.points)
+    u.push_back(p.head<2>());
+  const int middle = 12;
+  RCO_CHECK(internal::is_locally_injective(mesh, u));
+  RCO_CHECK(internal::has_simple_border(mesh, u));
+  std::vector<Vector_2> w = u;
+  w[middle] += Vector_2(0.3, 0.02); // beyond its neighbour: flipped
+  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  RCO_CHECK(internal::has_simple_border(mesh, w));
+  w = u;
+  w[middle] = u[middle + 1]; // no area
+  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  w = u;
+  w[middle](0) = std::numeric_limits<double>::quiet_NaN();
+  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  w[middle](0) = std::numeric_limits<double>::infinity();
+  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  w = u;
+  for(Vector_2& p : w)
+    p(0) = -p(0); // the mirror image
+  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  // barely positive, and barely not
+  const Shape one = [] {
+    Shape s;
+    s.add(0, 0, 0);
+    s.add(1, 1, 0);
+    s.add(3, 3, 0);
+    s.triangle(0, 1, 2);
+    return s;
+  }();
+  const double up = std::nextafter(3., 4.), down = std::nextafter(3., 2.);
+  RCO_CHECK(internal::is_locally_injective(indexed(one), {Vector_2(0, 0), Vector_2(1, 1), Vector_2(3, up)}));
+  RCO_CHECK(!internal::is_locally_injective(indexed(one), {Vector_2(0, 0), Vector_2(1, 1), Vector_2(3, 3)}));
+  RCO_CHECK(!internal::is_locally_injective(indexed(one), {Vector_2(0, 0), Vector_2(1, 1), Vector_2(3, down)}));
+
+  // fans whose triangles, all positive, go round their middle once, twice and three times
+  for(const int n : {3, 5, 7, 8, 13, 20})
+    for(const int turns : {1, 2, 3})
+    {
+      if(n <= 2 * turns)
+        continue;
+      Shape fan;
+      fan.add(0, 0, 0);
+      std::vector<Vector_2> flat(1, Vector_2(0.1, 0.2));
+      for(int i = 0; i < n; ++i)
+      {
+        const double a = 2 * pi * turns * i / n + 0.1;
+        fan.add(std::cos(a), std::sin(a), i);
+        flat.push_back(flat[0] + Vector_2(std::cos(a), std::sin(a)));
+        fan.triangle(0, 1 + i, 1 + (i + 1) % n);
+      }
+      const Indexed_mesh m = indexed(fan);
+      RCO_CHECK_EQUAL(internal::is_locally_injective(m, flat), turns == 1);
+      RCO_CHECK_EQUAL(is_locally_injective_exactly(m, flat), turns == 1);
+      RCO_CHECK_EQUAL(internal::has_simple_border(m, flat), turns == 1);
+    }
+
+  // a strip bent until its ends cross
+  for(const double turns : {0.9, 1.1})
+  {
+    const Shape bent = ramp(30, 2, turns);
+    std::vector<Vector_2> flat;
+    for(const Vector_3& p : bent.points)
+      flat.push_back(p.head<2>());
+    RCO_CHECK(internal::is_locally_injective(indexed(bent), flat));
+    RCO_CHECK_EQUAL(internal::has_simple_border(indexed(bent), flat), turns < 1);
+  }
+}
+
+// ------------------------------------------------------------------------------------------
+
+// triangles that hold p, borders included, exactly
+std::vector<int> holding(const Indexed_mesh& mesh, const std::vector<Vector_2>& u, const Vector_2& p)
+{
+  std::vector<int> result;
+  for(int t = 0; t < mesh.number_of_faces(); ++t)
+  {
+    bool inside = true;
+    for(int i = 0; i < 3; ++i)
+      inside = inside && !is_positive(u[mesh.corner_vertex[3 * t + (i + 1) % 3]],
+                                      u[mesh.corner_vertex[3 * t + i]], p);
+    if(inside)
+      result.push_back(t);
+  }
+  return result;
+}
+
+struct Walk_counts
+{
+  int found = 0, lost = 0, outside = 0;
+};
+
+// `known` says that p is at a known place of the mesh, perhaps but for rounding
+void check_walk(const Indexed_mesh& mesh,
+                const std::vector<Vector_2>& u,
+                const Vector_2& p,
+                int start,
+                bool known,
+                Walk_counts& counts)
+{
+  const internal::Planar_location location = internal::walk(mesh, u, p, start);
+  const std::vector<int> truth = holding(mesh, u, p);
+  if(location.triangle < 0)
+  {
+    ++(truth.empty() && !known ? counts.outside : counts.lost);
+    return;
+  }
+  ++counts.found;
+  RCO_CHECK(!truth.empty() || known);
+  RCO_CHECK(location.barycentric.minCoeff() >= 0);
+  RCO_CHECK_NEAR(location.barycentric.sum(), 1., 1e-14);
+  Vector_2 q = Vector_2::Zero();
+  for(int i = 0; i < 3; ++i)
+    q += location.barycentric(i) * u[mesh.corner_vertex[3 * location.triangle + i]];
+  RCO_CHECK_LESS_EQUAL((q - p).norm(), 1e-11);
+  // strictly inside one triangle it is that triangle
+  if(truth.size() == 1 && !known)
+    RCO_CHECK_EQUAL(location.triangle, truth.front());
+}
+
+void test_walk_on(const Shape& shape, const std::string& name, bool is_convex)
+{
+  const Scope scope("walk on " + name);
+  const Indexed_mesh mesh = indexed(shape);
+  std::vector<Vector_2> u;
+  for(const Vector_3& p : shape.points)
+    u.push_back(p.head<2>());
+  if(!RCO_CHECK(is_locally_injective_exactly(mesh, u)))
+    return;
+  Vector_2 low = u[0], high = u[0];
+  for(const Vector_2& p : u)
+  {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const int n = mesh.number_of_faces();
+  Random random(4);
+  Walk_counts anywhere, at_vertices, on_edges, near_by;
+  for(int i = 0; i < 3000; ++i)
+  {
+    const Vector_2 p(random(low(0) - 0.1, high(0) + 0.1), random(low(1) - 0.1, high(1) + 0.1));
+    check_walk(mesh, u, p, random.index(n), false, anywhere);
+  }
+  for(int i = 0; i < 1000; ++i)
+  {
+    const int c = random.index(mesh.number_of_corners());
+    const int a = mesh.source(c), b = mesh.target(c);
+    check_walk(mesh, u, u[a], is_convex ? random.index(n) : mesh.corner_face[c], true, at_vertices);
+    check_walk(mesh, u, 0.5 * (u[a] + u[b]), is_convex ? random.index(n) : mesh.corner_face[c], true,
+               on_edges);
+    // as it is used: to a point of the vertex' star, from one of the star's triangles
+    if(mesh.is_border_vertex[a])
+      continue;
+    const int begin = mesh.vertex_begin[a], degree = mesh.vertex_begin[a + 1] - begin;
+    const int t = mesh.corner_face[mesh.vertex_corners[begin + random.index(degree)]];
+    const int s = mesh.corner_face[mesh.vertex_corners[begin + random.index(degree)]];
+    const Vector_3 w = random.barycentric();
+    const int* v = &mesh.corner_vertex[3 * t];
+    check_walk(mesh, u, w(0) * u[v[0]] + w(1) * u[v[1]] + w(2) * u[v[2]], s, false, near_by);
+  }
+  RCO_CHECK_LESS(300, anywhere.found);
+  RCO_CHECK_LESS(100, anywhere.outside);
+  RCO_CHECK_LESS(100, near_by.found);
+  if(is_convex)
+  {
+    RCO_CHECK_LESS_EQUAL(anywhere.lost, anywhere.found / 500);
+    RCO_CHECK_EQUAL(at_vertices.lost, 0);
+    RCO_CHECK_EQUAL(on_edges.lost, 0);
+    RCO_CHECK_EQUAL(near_by.lost, 0);
+  }
+  else
+  {
+    // a bay of the border may be in the way, also of a star that is not convex
+    RCO_CHECK_EQUAL(at_vertices.lost, 0);
+    RCO_CHECK_EQUAL(on_edges.lost, 0);
+    RCO_CHECK_LESS_EQUAL(near_by.lost, near_by.found / 20);
+  }
+}
+
+void test_walk()
+{
+  test_walk_on(plane_grid(10, 10), "a plane", true);
+  test_walk_on(scrambled(plane_grid(10, 10), 0.2, 5, onto_plane), "a rough plane", true);
+  test_walk_on(scrambled(equilateral_grid(10, 9, 0.1), 0.3, 6, onto_plane), "a rough rhombus", true);
+  Shape ring = ramp(40, 4, 0.9);
+  for(Vector_3& p : ring.points)
+    p.z() = 0;
+  test_walk_on(ring, "a ring", false);
+  const Shape square = plane_grid(10, 10);
+  test_walk_on(compacted(without_faces(square,
+                                       [&](int f) {
+                                         const Vector_3& p = square.points[square.faces[f][0]];
+                                         return p.x() > 0.35 && p.y() > 0.35;
+                                       })),
+               "a corner", false);
+  // a start from which nothing can be reached
+  const Shape two = plane_grid(1, 1);
+  std::vector<Vector_2> u;
+  for(const Vector_3& p : two.points)
+    u.push_back(p.head<2>());
+  RCO_CHECK_EQUAL(internal::walk(indexed(two), u, Vector_2(5, 5), 0).triangle, -1);
+}
+
+int main()
+{
+  test_injectivity_checks();
+  test_walk();
+  test_flattenings();
+  test_overlap();
+  return report();
+}

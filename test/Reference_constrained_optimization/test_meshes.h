@@ -1,0 +1,109 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Shapes as CGAL's meshes and back, and shapes from files.
+
+#ifndef RCO_TEST_MESHES_H
+#define RCO_TEST_MESHES_H
+
+#include "test_util.h"
+
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/boost/graph/helpers.h>
+#include <CGAL/boost/graph/iterator.h>
+#include <CGAL/boost/graph/properties.h>
+#include <CGAL/number_utils.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace rco_test {
+
+// a shape as a model of MutableFaceGraph; vertices and faces keep their order
+template <typename Mesh>
+Mesh make_mesh(const Shape& shape)
+{
+  Mesh mesh;
+  auto vpm = get(CGAL::vertex_point, mesh);
+  typedef typename boost::property_traits<decltype(vpm)>::value_type Point;
+  typedef typename boost::graph_traits<Mesh>::vertex_descriptor Vertex;
+  std::vector<Vertex> all;
+  for(const Vector_3& p : shape.points)
+  {
+    all.push_back(add_vertex(mesh));
+    put(vpm, all.back(), Point(p.x(), p.y(), p.z()));
+  }
+  for(const std::vector<int>& f : shape.faces)
+  {
+    std::vector<Vertex> corners;
+    for(const int v : f)
+      corners.push_back(all[v]);
+    CGAL::Euler::add_face(corners, mesh);
+  }
+  return mesh;
+}
+
+template <typename Mesh>
+Shape make_shape(const Mesh& mesh)
+{
+  Shape shape;
+  auto vpm = get(CGAL::vertex_point, mesh);
+  auto index = get(CGAL::dynamic_vertex_property_t<int>(), mesh);
+  for(const auto v : vertices(mesh))
+  {
+    const auto& p = get(vpm, v);
+    put(index, v,
+        shape.add(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())));
+  }
+  for(const auto f : faces(mesh))
+  {
+    std::vector<int> corners;
+    for(const auto v : CGAL::vertices_around_face(halfedge(f, mesh), mesh))
+      corners.push_back(get(index, v));
+    shape.faces.push_back(corners);
+  }
+  return shape;
+}
+
+// reads an OFF file; an empty shape if there is none
+inline Shape read_off(const std::string& name)
+{
+  Shape shape;
+  std::ifstream file(name);
+  std::string line, all;
+  while(std::getline(file, line))
+    all += line.substr(0, line.find('#')) + "\n";
+  std::istringstream in(all);
+  std::string magic;
+  int number_of_vertices = 0, number_of_faces = 0, number_of_edges = 0;
+  if(!(in >> magic >> number_of_vertices >> number_of_faces >> number_of_edges) || magic != "OFF")
+    return shape;
+  for(int v = 0; v < number_of_vertices; ++v)
+  {
+    double x = 0, y = 0, z = 0;
+    in >> x >> y >> z;
+    shape.add(x, y, z);
+  }
+  for(int f = 0; f < number_of_faces; ++f)
+  {
+    int degree = 0;
+    in >> degree;
+    std::vector<int> corners(degree);
+    for(int& v : corners)
+      in >> v;
+    std::getline(in, line); // colours
+    shape.faces.push_back(corners);
+  }
+  return in ? shape : Shape();
+}
+
+} // namespace rco_test
+
+#endif // RCO_TEST_MESHES_H

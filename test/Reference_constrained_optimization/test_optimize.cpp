@@ -1,0 +1,911 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The whole optimization: what every result must satisfy, whatever the mesh.
+
+#include "test_meshes.h"
+
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polyhedron_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+
+#ifdef CGAL_LINKED_WITH_TBB
+#include <tbb/global_control.h>
+#endif
+
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace params = CGAL::parameters;
+using namespace rco_test;
+
+typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
+typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
+
+struct Stopped : std::runtime_error
+{
+  Stopped() : std::runtime_error("the visitor stops") {}
+};
+
+// Tests every patch and adds up what it is told; stops when told to.
+struct Recorder : RCO::Default_visitor
+{
+  long questions_until_stop = -1, patches_until_throw = -1;
+
+  std::size_t iterations = 0, rounds = 0, patches = 0, accepted = 0, faces = 0, open_rounds = 0;
+  std::size_t announced = 0;
+  double energy_change = 0;
+  long defect_change = 0;
+  std::vector<double> energies;
+
+  void on_iteration_begin(std::size_t i) { RCO_CHECK_EQUAL(i, iterations); }
+  void on_iteration_end(std::size_t i, double energy)
+  {
+    RCO_CHECK_EQUAL(i, iterations);
+    RCO_CHECK(std::isfinite(energy));
+    ++iterations;
+    energies.push_back(energy);
+  }
+  void on_round_begin(std::size_t n)
+  {
+    ++rounds;
+    ++open_rounds;
+    announced += n;
+  }
+  void on_round_end() { --open_rounds; }
+  void on_patch_end(const RCO::Patch_report& r)
+  {
+    ++patches;
+    faces += r.number_of_faces;
+    if(r.accepted)
+    {
+      ++accepted;
+      RCO_CHECK(r.defects_after < r.defects_before ||
+                (r.defects_after == r.defects_before && r.energy_after < r.energy_before));
+      energy_change += r.energy_after - r.energy_before;
+      defect_change += long(r.defects_after) - long(r.defects_before);
+    }
+    else
+    {
+      RCO_CHECK_EQUAL(r.defects_after, r.defects_before);
+      RCO_CHECK_EQUAL(r.energy_after, r.energy_before);
+    }
+    if(patches_until_throw >= 0 && patches_until_throw-- == 0)
+      throw Stopped();
+  }
+  bool go_further() { return questions_until_stop < 0 || questions_until_stop-- > 0; }
+};
+
+struct Options
+{
+  unsigned int iterations = 30;
+  unsigned int seed = 0;
+  double time = 1e9;
+  int patch_size = 1000;
+  double threshold = 0.25;
+  std::vector<char> vertex_is_constrained; // by position
+  std::set<std::pair<int, int>> constrained_edges; // smaller vertex first
+  Recorder recorder;
+  bool expect_throw = false;
+};
+
+struct Outcome
+{
+  RCO::Result result;
+  Recorder recorder;
+  Shape before, after, reference; // coordinates as the point types hold them
+  std::vector<char> is_free;
+  std::vector<std::pair<int, Vector_3>> locations; // face of the reference, weights of its corners
+  bool thrown = false;
+};
+
+// calls the function with everything recorded
+template <typename Tag, typename M, typename R, typename Energy>
+Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& options)
+{
+  typedef typename boost::graph_traits<R>::face_descriptor Reference_face;
+  typedef std::pair<Reference_face, std::array<double, 3>> Location;
+  Outcome out;
+  out.before = make_shape(mesh);
+  out.reference = make_shape(reference);
+  out.recorder = options.recorder;
+
+  const Indexed_mesh indices = indexed(out.before);
+  auto vertex_map = get(CGAL::dynamic_vertex_property_t<bool>(), mesh);
+  auto edge_map = get(CGAL::dynamic_edge_property_t<bool>(), mesh);
+  auto location_map = get(CGAL::dynamic_vertex_property_t<Location>(), mesh);
+  auto vertex_index = get(CGAL::dynamic_vertex_property_t<int>(), mesh);
+  int i = 0;
+  for(const auto v : vertices(mesh))
+  {
+    const bool constrained =
+      !options.vertex_is_constrained.empty() && options.vertex_is_constrained[i];
+    put(vertex_map, v, constrained);
+    put(vertex_index, v, i);
+    out.is_free.push_back(!constrained && !indices.is_border_vertex[i] &&
+                          indices.vertex_begin[i] < indices.vertex_begin[i + 1]);
+    ++i;
+  }
+  for(const auto e : edges(mesh))
+  {
+    int a = get(vertex_index, source(e, mesh)), b = get(vertex_index, target(e, mesh));
+    const bool constrained = options.constrained_edges.count({(std::min)(a, b), (std::max)(a, b)}) != 0;
+    put(edge_map, e, constrained);
+    if(constrained)
+      out.is_free[a] = out.is_free[b] = 0;
+  }
+
+  try
+  {
+    out.result = CGAL::reference_constrained_optimize<Tag>(
+      mesh, reference, energy,
+      params::developability_threshold(options.threshold)
+        .maximum_patch_size(options.patch_size)
+        .vertex_location_map(location_map)
+        .number_of_iterations(options.iterations)
+        .random_seed(options.seed)
+        .maximum_running_time(options.time)
+        .vertex_is_constrained_map(vertex_map)
+        .edge_is_constrained_map(edge_map)
+        .visitor(std::ref(out.recorder)));
+  }
+  catch(const Stopped&)
+  {
+    out.thrown = true;
+  }
+  RCO_CHECK_EQUAL(out.thrown, options.expect_throw);
+  out.after = make_shape(mesh);
+
+  auto face_index = get(CGAL::dynamic_face_property_t<int>(), reference);
+  int f = 0;
+  for(const auto face : faces(reference))
+    put(face_index, face, f++);
+  for(const auto v : vertices(mesh))
+  {
+    const Location& l = get(location_map, v);
+    if(indices.vertex_begin[get(vertex_index, v)] == indices.vertex_begin[get(vertex_index, v) + 1])
+    {
+      out.locations.push_back({-1, Vector_3::Zero()});
+      continue;
+    }
+    // weights belong to source, target and next target of the face's half-edge; faces of a shape
+    // start with the target
+    out.locations.push_back({get(face_index, l.first), Vector_3(l.second[1], l.second[2], l.second[0])});
+  }
+  return out;
+}
+
+// ---------------------------------------------------------- what the result should say, anew
+
+struct Measures
+{
+  double energy = 0; // mean
+  std::size_t flips = 0, folds = 0;
+  bool is_plain = true; // no element is turned round or near its cap
+  double smallest_angle = 180, mean_angle = 0;
+};
+
+// of triangles as they lie on the reference, for Minimum_angle_energy(k)
+Measures measure(const Shape& shape, const Outcome& out, double k)
+{
+  std::vector<Vector_3> corner_normals(out.reference.points.size(), Vector_3::Zero());
+  for(const auto& t : out.reference.faces)
+  {
+    const Vector_3 n = (out.reference.points[t[1]] - out.reference.points[t[0]])
+                         .cross(out.reference.points[t[2]] - out.reference.points[t[0]]);
+    for(const int v : t)
+      corner_normals[v] += n;
+  }
+  for(Vector_3& n : corner_normals)
+    n.normalize();
+  const auto normal_at = [&](int v) {
+    Vector_3 n = Vector_3::Zero();
+    for(int i = 0; i < 3; ++i)
+      n += out.locations[v].second(i) * corner_normals[out.reference.faces[out.locations[v].first][i]];
+    return n;
+  };
+
+  Measures m;
+  std::vector<Vector_3> normals;
+  for(const auto& t : shape.faces)
+  {
+    const Vector_3 &a = shape.points[t[0]], &b = shape.points[t[1]], &c = shape.points[t[2]];
+    const Vector_3 n = (b - a).cross(c - a);
+    normals.push_back(n);
+    const double turn = n.dot(normal_at(t[0]) + normal_at(t[1]) + normal_at(t[2]));
+    m.flips += turn < 0;
+    const double lengths = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+    const double exponent = k * lengths / (std::sqrt(3.) * n.norm());
+    m.is_plain = m.is_plain && turn > 0 && exponent < 2 * k + 18;
+    m.energy += std::exp(exponent);
+    const double angle = smallest_angle(a, b, c);
+    m.smallest_angle = (std::min)(m.smallest_angle, angle);
+    m.mean_angle += angle / double(shape.faces.size());
+  }
+  m.energy /= double(shape.faces.size());
+  const Indexed_mesh mesh = indexed(shape);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(mesh.opposite[c] > c)
+    {
+      const Vector_3 &p = normals[mesh.corner_face[c]], &q = normals[mesh.corner_face[mesh.opposite[c]]];
+      m.folds += p.dot(q) < -0.5 * p.norm() * q.norm();
+    }
+  return m;
+}
+
+bool same_bits(const Vector_3& a, const Vector_3& b)
+{
+  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
+}
+
+bool same_bits(const Shape& a, const Shape& b)
+{
+  if(a.points.size() != b.points.size() || a.faces != b.faces)
+    return false;
+  for(std::size_t i = 0; i < a.points.size(); ++i)
+    if(!same_bits(a.points[i], b.points[i]))
+      return false;
+  return true;
+}
+
+double largest_coordinate(const Shape& s)
+{
+  double largest = 0;
+  for(const Vector_3& p : s.points)
+    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
+  return largest;
+}
+
+// All that must hold of any run. `unit` is the distance of neighbouring numbers near 1.
+Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
+{
+  const RCO::Result& r = out.result;
+  const Recorder& seen = out.recorder;
+  const double diagonal = CGAL::Reference_constrained_optimization::internal::bounding_box_diagonal(
+    out.reference.points);
+  const double tolerance = 1e-12 * diagonal + 4 * unit * largest_coordinate(out.reference);
+
+  RCO_CHECK(out.before.faces == out.after.faces);
+  std::size_t number_free = 0;
+  for(std::size_t v = 0; v < out.after.points.size(); ++v)
+  {
+    const Vector_3& p = out.after.points[v];
+    RCO_CHECK(p.allFinite());
+    if(!out.is_free[v])
+      RCO_CHECK(same_bits(p, out.before.points[v]));
+    number_free += out.is_free[v];
+    if(out.locations[v].first < 0)
+      continue;
+    const Vector_3& b = out.locations[v].second;
+    RCO_CHECK(b.minCoeff() >= 0);
+    RCO_CHECK_NEAR(b.sum(), 1., 1e-12);
+    const std::vector<int>& t = out.reference.faces[out.locations[v].first];
+    const Vector_3 q = b(0) * out.reference.points[t[0]] + b(1) * out.reference.points[t[1]] +
+                       b(2) * out.reference.points[t[2]];
+    if(out.is_free[v])
+      RCO_CHECK_LESS_EQUAL((p - q).norm(), tolerance);
+    else
+      RCO_CHECK_LESS_EQUAL((p - q).norm(), r.largest_initial_distance + tolerance);
+  }
+  const Measures after = measure(out.after, out, k);
+  if(out.thrown)
+    return after; // there is no result
+
+  RCO_CHECK_EQUAL(r.number_of_free_vertices, number_free);
+  RCO_CHECK(std::isfinite(r.initial_energy) && std::isfinite(r.final_energy));
+  const std::size_t defects_before = r.initial_number_of_flips + r.initial_number_of_fold_edges;
+  const std::size_t defects_after = r.number_of_flips + r.number_of_fold_edges;
+  RCO_CHECK_LESS_EQUAL(defects_after, defects_before);
+  if(defects_after == defects_before)
+    RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
+  if(unit < 1e-10)
+  {
+    RCO_CHECK_EQUAL(after.flips, r.number_of_flips);
+    RCO_CHECK_EQUAL(after.folds, r.number_of_fold_edges);
+  }
+  if(after.is_plain)
+    RCO_CHECK_NEAR(r.final_energy, after.energy, 1e-7 * after.energy * (unit / 2.3e-16));
+
+  // what the visitor was told adds up to the result
+  RCO_CHECK_EQUAL(r.number_of_iterations, seen.iterations);
+  RCO_CHECK_EQUAL(r.number_of_rounds, seen.rounds);
+  RCO_CHECK_EQUAL(r.number_of_patches, seen.patches);
+  RCO_CHECK_EQUAL(r.number_of_patches, seen.announced);
+  RCO_CHECK_EQUAL(r.number_of_accepted_patches, seen.accepted);
+  RCO_CHECK_EQUAL(r.sum_of_patch_sizes, double(seen.faces));
+  RCO_CHECK_EQUAL(seen.open_rounds, std::size_t(0));
+  RCO_CHECK_LESS_EQUAL(r.number_of_flattened_patches, r.number_of_accepted_patches);
+  RCO_CHECK_EQUAL(long(defects_after) - long(defects_before), seen.defect_change);
+  if(r.initial_energy < 1e6)
+  {
+    const double elements = double(out.before.faces.size()) *
+                            (out.before.faces.front().size() == 4 ? 4 : 1);
+    RCO_CHECK_NEAR((r.final_energy - r.initial_energy) * elements, seen.energy_change,
+                   1e-8 * r.initial_energy * elements * (unit / 2.3e-16));
+  }
+  double previous = r.initial_energy;
+  for(const double e : seen.energies)
+  {
+    if(defects_before == 0)
+      RCO_CHECK_LESS_EQUAL(e, previous * (1 + 1e-12));
+    previous = e;
+  }
+  RCO_CHECK(r.running_time >= 0);
+  if(r.status == RCO::Status::nothing_to_do)
+    RCO_CHECK(r.number_of_iterations == 0);
+  return after;
+}
+
+// the run and all checks, for a mesh and a reference of the usual type
+Outcome optimized(const Shape& shape, const Shape& reference, const Options& options = Options())
+{
+  Mesh mesh = make_mesh<Mesh>(shape);
+  const Mesh r = make_mesh<Mesh>(reference);
+  Outcome out =
+    run<CGAL::Sequential_tag>(mesh, r, RCO::Minimum_angle_energy(), options);
+  check_outcome(out);
+  return out;
+}
+
+// ------------------------------------------------------------------------ meshes by formulas
+
+// scrambled regular shapes become regular again
+void test_recovery(const Shape& regular,
+                   const std::function<Vector_3(const Vector_3&)>& project,
+                   double least_part,
+                   const std::string& name)
+{
+  const Scope scope("recovery of " + name);
+  const Shape rough = scrambled(regular, 0.3, 1, project);
+  const Outcome out = optimized(rough, regular);
+  const Measures m = measure(out.after, out, 1);
+  RCO_CHECK_EQUAL(out.result.number_of_flips + out.result.number_of_fold_edges, std::size_t(0));
+  RCO_CHECK_LESS(smallest_angle(rough), 0.6 * smallest_angle(regular));
+  RCO_CHECK_LESS_EQUAL(least_part * smallest_angle(regular), m.smallest_angle);
+  RCO_CHECK_LESS_EQUAL(0.97 * mean_smallest_angle(regular), m.mean_angle);
+  RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+  RCO_CHECK(out.result.status == RCO::Status::converged);
+  std::cout << name << ": smallest angle " << smallest_angle(rough) << " -> " << m.smallest_angle
+            << " (regular " << smallest_angle(regular) << "), "
+            << out.result.number_of_iterations << " iterations" << std::endl;
+}
+
+void test_recoveries()
+{
+  test_recovery(equilateral_grid(14, 12), onto_plane, 0.99, "an equilateral grid");
+  test_recovery(icosphere(3), onto_sphere, 0.9, "a sphere");
+  test_recovery(torus(40, 16), onto_torus(1, 0.4), 0.9, "a torus");
+  test_recovery(cylinder(24, 12, 0.5, 1.5), onto_cylinder(0.5), 0.9, "a tube");
+  test_recovery(joined(icosphere(2), torus(24, 10, 1, 0.4), Vector_3(3, 0, 0)),
+                [](const Vector_3& p) -> Vector_3 {
+                  if(p.x() < 1.3)
+                    return p.normalized();
+                  const Vector_3 c(3, 0, 0);
+                  return c + onto_torus(1, 0.4)(p - c);
+                },
+                0.85, "two components");
+}
+
+// as quads are not triangles: every corner wants to be right
+struct Corner_energy
+{
+  typedef RCO::Exponential_MIPS_density Density;
+  Density m_density;
+  const Density& density() const { return m_density; }
+  void append_elements(const RCO::Energy_context& context,
+                       std::size_t f,
+                       std::vector<RCO::Energy_element>& elements) const
+  {
+    for(int i = 0; i < context.degree(f); ++i)
+    {
+      RCO::Energy_element e;
+      e.corners = {{i, (i + 1) % context.degree(f), (i + 3) % context.degree(f)}};
+      elements.push_back(e);
+    }
+  }
+};
+
+void test_quads()
+{
+  const Scope scope("quads");
+  Shape grid = plane_grid(12, 10, 1, true);
+  Shape rough = scrambled(grid, 0.3, 2, onto_plane);
+  for(Shape* s : {&grid, &rough})
+    for(Vector_3& p : s->points)
+      p.z() = 0.1 * p.x() * p.x();
+  Mesh mesh = make_mesh<Mesh>(rough);
+  const Mesh reference = make_mesh<Mesh>(grid);
+  const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, Corner_energy());
+  RCO_CHECK_LESS(r.final_energy, r.initial_energy);
+  RCO_CHECK_NEAR(r.final_energy, std::exp(2.), 0.05 * std::exp(2.));
+  RCO_CHECK_EQUAL(r.number_of_flips, std::size_t(0));
+  const Shape after = make_shape(mesh);
+  const Indexed_mesh indices = indexed(rough);
+  for(std::size_t v = 0; v < after.points.size(); ++v)
+    if(indices.is_border_vertex[v])
+      RCO_CHECK(same_bits(after.points[v], rough.points[v]));
+}
+
+// small meshes and those with nothing to do
+void test_small_meshes()
+{
+  {
+    const Scope scope("a tetrahedron");
+    Shape shape = tetrahedron();
+    const Outcome regular = optimized(shape, shape);
+    RCO_CHECK_LESS_EQUAL(regular.result.final_energy, regular.result.initial_energy);
+    shape.points[0] += Vector_3(0.4, -0.2, 0.1);
+    optimized(shape, shape);
+    shape = tetrahedron();
+    shape.points[0] += Vector_3(0.1, -0.1, 0.2);
+    optimized(shape, tetrahedron());
+  }
+  {
+    const Scope scope("an octahedron on a sphere");
+    Shape shape;
+    for(int i = 0; i < 3; ++i)
+      for(const double s : {1., -1.})
+        shape.add(i == 0 ? s : 0, i == 1 ? s : 0, i == 2 ? s : 0);
+    for(const int x : {0, 1})
+      for(const int y : {2, 3})
+        for(const int z : {4, 5})
+          (x + y + z) % 2 == 0 ? shape.triangle(x, y, z) : shape.triangle(x, z, y);
+    shape.points[4] = Vector_3(0.5, 0.4, 0.7).normalized();
+    const Outcome out = optimized(shape, icosphere(3));
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+  }
+  for(const Shape& shape : {plane_grid(1, 1), plane_grid(9, 1), annulus(8, 1)})
+  {
+    const Scope scope("a strip");
+    const Outcome out = optimized(shape, shape);
+    RCO_CHECK(out.result.status == RCO::Status::nothing_to_do);
+    RCO_CHECK_EQUAL(out.result.final_energy, out.result.initial_energy);
+    RCO_CHECK(same_bits(out.before, out.after));
+  }
+  {
+    const Scope scope("one free vertex");
+    Shape shape = plane_grid(2, 2);
+    const Shape reference = shape;
+    shape.points[4] += Vector_3(0.15, 0.1, 0);
+    const Outcome out = optimized(shape, reference);
+    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, std::size_t(1));
+    RCO_CHECK_LESS((out.after.points[4] - reference.points[4]).norm(), 0.05);
+  }
+  {
+    const Scope scope("isolated vertices");
+    Shape shape = scrambled(plane_grid(6, 6), 0.3, 3, onto_plane);
+    shape.add(100, 200, 300);
+    const Outcome out = optimized(shape, plane_grid(6, 6));
+    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, std::size_t(25));
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+    // and in the reference
+    Shape reference = plane_grid(6, 6);
+    reference.add(0.5, 0.5, 10);
+    const Outcome other = optimized(shape, reference);
+    RCO_CHECK_LESS(other.result.final_energy, other.result.initial_energy);
+  }
+  {
+    const Scope scope("all vertices constrained");
+    Options options;
+    const Shape shape = scrambled(icosphere(2), 0.3, 4, onto_sphere);
+    options.vertex_is_constrained.assign(shape.points.size(), 1);
+    const Outcome out = optimized(shape, icosphere(2), options);
+    RCO_CHECK(out.result.status == RCO::Status::nothing_to_do);
+    RCO_CHECK(same_bits(out.before, out.after));
+    RCO_CHECK_LESS(0., out.result.largest_initial_distance);
+  }
+}
+
+// ------------------------------------------------------------------------------- constraints
+
+void test_constraints()
+{
+  const Scope scope("constraints");
+  {
+    // some vertices, a few of them off the reference
+    Shape shape = scrambled(icosphere(3), 0.3, 5, onto_sphere);
+    Options options;
+    Random random(6);
+    for(Vector_3& p : shape.points)
+    {
+      options.vertex_is_constrained.push_back(random() < 0.2);
+      if(options.vertex_is_constrained.back() && random() < 0.2)
+        p *= 1.02;
+    }
+    const Outcome out = optimized(shape, icosphere(3), options);
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+    RCO_CHECK_LESS(0.015, out.result.largest_initial_distance);
+    std::size_t moved = 0;
+    for(std::size_t v = 0; v < shape.points.size(); ++v)
+      moved += !same_bits(out.before.points[v], out.after.points[v]);
+    RCO_CHECK_LESS(out.result.number_of_free_vertices / 2, moved);
+  }
+  {
+    // the edges of a cube keep its sides apart: every face stays in its plane
+    const int n = 8;
+    Shape shape = cube(n);
+    const Shape reference = shape;
+    const auto number_of_planes = [](const Vector_3& p) {
+      int count = 0;
+      for(int i = 0; i < 3; ++i)
+        count += p(i) == 0 || p(i) == 1;
+      return count;
+    };
+    Random random(7);
+    for(Vector_3& p : shape.points)
+      if(number_of_planes(p) == 1)
+        for(int i = 0; i < 3; ++i)
+          if(p(i) != 0 && p(i) != 1)
+            p(i) += random(-0.3, 0.3) / n;
+    Options options;
+    for(const auto& t : shape.faces)
+      for(int i = 0; i < 3; ++i)
+      {
+        const int a = t[i], b = t[(i + 1) % 3];
+        int shared = 0;
+        for(int d = 0; d < 3; ++d)
+          shared += shape.points[a](d) == shape.points[b](d) &&
+                    (shape.points[a](d) == 0 || shape.points[a](d) == 1);
+        if(shared == 2)
+          options.constrained_edges.insert({(std::min)(a, b), (std::max)(a, b)});
+      }
+    RCO_CHECK_EQUAL(options.constrained_edges.size(), std::size_t(12 * n));
+    const Outcome out = optimized(shape, reference, options);
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, std::size_t(6 * (n - 1) * (n - 1)));
+    RCO_CHECK_NEAR(area(out.after), 6., 1e-9);
+    RCO_CHECK_LESS(35., smallest_angle(out.after));
+  }
+}
+
+// --------------------------------------------------------------------------------- bad input
+
+void test_degenerate_faces()
+{
+  const Scope scope("degenerate faces");
+  const Shape regular = icosphere(3);
+  Shape shape = scrambled(regular, 0.25, 8, onto_sphere);
+  const Indexed_mesh mesh = indexed(shape);
+  std::size_t degenerate = 0;
+  for(const int v : {100, 250, 400, 600})
+    shape.points[v] = shape.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
+  for(const auto& t : shape.faces)
+    degenerate += (shape.points[t[1]] - shape.points[t[0]])
+                    .cross(shape.points[t[2]] - shape.points[t[0]])
+                    .norm() == 0;
+  RCO_CHECK_EQUAL(degenerate, std::size_t(8));
+  const Outcome out = optimized(shape, regular);
+  const Measures m = measure(out.after, out, 1);
+  RCO_CHECK_LESS(mean_smallest_angle(shape) + 5, m.mean_angle);
+  // they open, as they may
+  RCO_CHECK_LESS(20., m.smallest_angle);
+
+  // the same vertices cannot move: their faces stay as they are, everything else improves
+  Options options;
+  options.vertex_is_constrained.assign(shape.points.size(), 0);
+  for(const int v : {100, 250, 400, 600})
+    options.vertex_is_constrained[v] =
+      options.vertex_is_constrained[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])] = 1;
+  const Outcome held = optimized(shape, regular, options);
+  const Measures h = measure(held.after, held, 1);
+  RCO_CHECK_LESS(mean_smallest_angle(shape) + 4, h.mean_angle);
+  std::size_t bad = 0;
+  for(const auto& t : held.after.faces)
+    bad += smallest_angle(held.after.points[t[0]], held.after.points[t[1]], held.after.points[t[2]]) < 15;
+  RCO_CHECK_LESS_EQUAL(bad, std::size_t(40));
+
+  // a reference with faces of no area
+  const Outcome both = optimized(scrambled(regular, 0.25, 9, onto_sphere), shape);
+  RCO_CHECK_LESS(both.result.final_energy, both.result.initial_energy);
+
+  // a folded start: no more flips and folds than before, and energy where they stay
+  Shape folded = scrambled(plane_grid(14, 14), 0.8, 10, onto_plane);
+  const Outcome unfolded = optimized(folded, plane_grid(14, 14));
+  RCO_CHECK_LESS(std::size_t(5), unfolded.result.initial_number_of_flips);
+  RCO_CHECK_LESS(unfolded.result.number_of_flips + unfolded.result.number_of_fold_edges,
+                 unfolded.result.initial_number_of_flips + unfolded.result.initial_number_of_fold_edges);
+  std::cout << "scrambled beyond folding: " << unfolded.result.initial_number_of_flips << " flips and "
+            << unfolded.result.initial_number_of_fold_edges << " fold edges -> "
+            << unfolded.result.number_of_flips << " and " << unfolded.result.number_of_fold_edges
+            << std::endl;
+}
+
+// a thin sheet, where the other side is nearer than the next vertex: no vertex changes sides
+void test_thin_sheet()
+{
+  const Scope scope("a thin double sheet");
+  for(const double gap : {1e-2, 1e-5})
+  {
+    const Shape fine = double_sheet(30, gap, 0.04);
+    Shape shape = double_sheet(15, gap, 0.04);
+    Random random(11);
+    const int half = int(shape.points.size()) / 2;
+    Options options;
+    options.vertex_is_constrained.assign(shape.points.size(), 0);
+    for(std::size_t v = 0; v < shape.points.size(); ++v)
+    {
+      Vector_3& p = shape.points[v];
+      const bool rim = p.head<2>().minCoeff() < 1e-9 || p.head<2>().maxCoeff() > 1 - 1e-9;
+      options.vertex_is_constrained[v] = rim;
+      if(rim)
+        continue;
+      p.x() += random(-0.3, 0.3) / 15;
+      p.y() += random(-0.3, 0.3) / 15;
+      // onto the fine sheet's chord
+      const double x = 30 * p.x(), low = std::floor(x) / 30, high = low + 1. / 30;
+      const double t = x - std::floor(x);
+      p.z() = 0.04 * ((1 - t) * std::sin(4 * pi * low) + t * std::sin(4 * pi * high)) -
+              (int(v) < half ? 0 : gap);
+    }
+    const Outcome out = optimized(shape, fine, options);
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+    const int fine_half = int(fine.points.size()) / 2;
+    for(std::size_t v = 0; v < shape.points.size(); ++v)
+    {
+      if(!out.is_free[v])
+        continue;
+      for(const int w : fine.faces[out.locations[v].first])
+        RCO_CHECK_EQUAL(w < fine_half, int(v) < half);
+    }
+  }
+}
+
+// ----------------------------------------------------------------------------- same and other
+
+void test_determinism()
+{
+  const Scope scope("determinism");
+  const Shape regular = torus(40, 16), rough = scrambled(regular, 0.3, 12, onto_torus(1, 0.4));
+  Options options;
+  options.iterations = 4;
+  options.patch_size = 150;
+  const Outcome first = optimized(rough, regular, options);
+  const Outcome second = optimized(rough, regular, options);
+  RCO_CHECK(same_bits(first.after, second.after));
+  RCO_CHECK_EQUAL(first.result.final_energy, second.result.final_energy);
+  RCO_CHECK_EQUAL(first.result.number_of_patches, second.result.number_of_patches);
+  options.seed = 1;
+  const Outcome third = optimized(rough, regular, options);
+  RCO_CHECK(!same_bits(first.after, third.after));
+  RCO_CHECK_NEAR(third.result.final_energy, first.result.final_energy, 0.1 * first.result.final_energy);
+
+#ifdef CGAL_LINKED_WITH_TBB
+  options.seed = 0;
+  for(const int threads : {1, 2, 8})
+  {
+    const Scope s(std::to_string(threads) + " threads");
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    Mesh mesh = make_mesh<Mesh>(rough);
+    const Mesh reference = make_mesh<Mesh>(regular);
+    const Outcome out =
+      run<CGAL::Parallel_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
+    check_outcome(out);
+    RCO_CHECK(same_bits(first.after, out.after));
+    RCO_CHECK_EQUAL(first.result.final_energy, out.result.final_energy);
+    RCO_CHECK_EQUAL(first.result.number_of_patches, out.result.number_of_patches);
+  }
+#endif
+
+  // the same object for both, or a copy of it
+  Mesh alone = make_mesh<Mesh>(rough), other = make_mesh<Mesh>(rough);
+  const Mesh copy = other;
+  options.seed = 0;
+  const Outcome same = run<CGAL::Sequential_tag>(alone, alone, RCO::Minimum_angle_energy(), options);
+  const Outcome apart = run<CGAL::Sequential_tag>(other, copy, RCO::Minimum_angle_energy(), options);
+  check_outcome(apart);
+  RCO_CHECK(same_bits(same.after, apart.after));
+  RCO_CHECK_EQUAL(same.result.final_energy, apart.result.final_energy);
+  RCO_CHECK_LESS(same.result.final_energy, same.result.initial_energy);
+  RCO_CHECK_EQUAL(same.result.largest_initial_distance, 0.);
+}
+
+template <typename M>
+Outcome with_mesh_type(const Shape& rough, const Shape& regular, double unit)
+{
+  M mesh = make_mesh<M>(rough);
+  const M reference = make_mesh<M>(regular);
+  Options options;
+  options.iterations = 3;
+  const Outcome out = run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
+  check_outcome(out, 1, unit);
+  RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+  return out;
+}
+
+void test_mesh_types()
+{
+  const Scope scope("mesh types");
+  const Shape regular = icosphere(2), rough = scrambled(regular, 0.3, 13, onto_sphere);
+  const Outcome plain = with_mesh_type<Mesh>(rough, regular, 2.3e-16);
+  const Outcome epick = with_mesh_type<CGAL::Surface_mesh<Epick::Point_3>>(rough, regular, 2.3e-16);
+  const Outcome polyhedron = with_mesh_type<CGAL::Polyhedron_3<Epick>>(rough, regular, 2.3e-16);
+  RCO_CHECK(same_bits(plain.after, epick.after));
+  RCO_CHECK(same_bits(plain.after, polyhedron.after));
+  const Outcome single = with_mesh_type<CGAL::Surface_mesh<CGAL::Simple_cartesian<float>::Point_3>>(
+    rough, regular, 1.2e-7);
+  RCO_CHECK_NEAR(smallest_angle(single.after), smallest_angle(plain.after), 3.);
+
+  // mesh and reference of different types, and another order of faces: as good
+  CGAL::Polyhedron_3<Epick> mesh = make_mesh<CGAL::Polyhedron_3<Epick>>(rough);
+  Shape turned = regular;
+  std::reverse(turned.faces.begin(), turned.faces.end());
+  for(auto& f : turned.faces)
+    std::reverse(f.begin(), f.end()); // a reference that is oriented the other way
+  const Mesh reference = make_mesh<Mesh>(turned);
+  const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
+  RCO_CHECK_EQUAL(r.initial_number_of_flips, std::size_t(0));
+  RCO_CHECK_NEAR(r.final_energy, plain.result.final_energy, 0.05 * r.final_energy);
+}
+
+// ----------------------------------------------------------------------------------- endings
+
+void test_endings()
+{
+  const Scope scope("endings");
+  const Shape regular = torus(30, 12);
+  // on the reference already, so that the start is known
+  const Shape rough = [&] {
+    Shape s = scrambled(regular, 0.3, 14, onto_torus(1, 0.4));
+    Options none;
+    none.iterations = 0;
+    return optimized(s, regular, none).after;
+  }();
+  Options options;
+  options.patch_size = 80;
+
+  {
+    const Scope s("no iteration");
+    options.iterations = 0;
+    const Outcome out = optimized(rough, regular, options);
+    RCO_CHECK(same_bits(out.before, out.after));
+    RCO_CHECK_EQUAL(out.result.number_of_iterations, std::size_t(0));
+    RCO_CHECK(out.result.status == RCO::Status::iteration_limit);
+    RCO_CHECK_EQUAL(out.result.final_energy, out.result.initial_energy);
+    options.iterations = 1;
+    const Outcome one = optimized(rough, regular, options);
+    RCO_CHECK_EQUAL(one.result.number_of_iterations, std::size_t(1));
+    RCO_CHECK(one.result.status == RCO::Status::iteration_limit);
+    RCO_CHECK_LESS(one.result.final_energy, one.result.initial_energy);
+    options.iterations = 30;
+  }
+  const Outcome complete = optimized(rough, regular, options);
+  RCO_CHECK(complete.result.status == RCO::Status::converged);
+  double previous = complete.result.initial_energy;
+  for(const int questions : {0, 1, 2, 3, 6})
+  {
+    const Scope s("interrupted after " + std::to_string(questions));
+    options.recorder.questions_until_stop = questions;
+    const Outcome out = optimized(rough, regular, options);
+    RCO_CHECK(out.result.status == RCO::Status::interrupted);
+    RCO_CHECK_LESS_EQUAL(out.result.final_energy, previous);
+    RCO_CHECK_LESS_EQUAL(complete.result.final_energy, out.result.final_energy);
+    if(questions == 0)
+      RCO_CHECK(same_bits(out.before, out.after));
+    previous = out.result.final_energy;
+  }
+  RCO_CHECK_LESS(previous, complete.result.initial_energy);
+  options.recorder.questions_until_stop = -1;
+
+  for(const int patches : {0, 1, 5, 20})
+  {
+    const Scope s("thrown at patch " + std::to_string(patches));
+    options.recorder.patches_until_throw = patches;
+    options.expect_throw = true;
+    Mesh mesh = make_mesh<Mesh>(rough);
+    const Mesh reference = make_mesh<Mesh>(regular);
+    const Outcome out =
+      run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
+    const Measures m = check_outcome(out);
+    RCO_CHECK_EQUAL(out.recorder.patches, std::size_t(patches + 1));
+    // what was accepted up to then is written, and nothing else
+    const double n = double(rough.faces.size());
+    RCO_CHECK_NEAR(m.energy * n, complete.result.initial_energy * n + out.recorder.energy_change,
+                   1e-7 * complete.result.initial_energy * n);
+    if(out.recorder.accepted > 0)
+      RCO_CHECK_LESS(out.recorder.energy_change, 0.);
+  }
+  options.recorder.patches_until_throw = -1;
+  options.expect_throw = false;
+
+  {
+    const Scope s("time limit");
+    options.time = 1e-9;
+    const Outcome out = optimized(rough, regular, options);
+    RCO_CHECK(out.result.status == RCO::Status::time_limit);
+    RCO_CHECK(same_bits(out.before, out.after));
+    options.time = 1e9;
+  }
+  {
+    const Scope s("a converged mesh");
+    const Outcome again = optimized(complete.after, regular, options);
+    RCO_CHECK_LESS_EQUAL(again.result.final_energy, complete.result.final_energy);
+    RCO_CHECK_LESS(complete.result.final_energy * 0.97, again.result.final_energy);
+  }
+}
+
+// a larger exponent raises the smallest angle
+void test_exponents()
+{
+  const Scope scope("exponents");
+  const Shape regular = icosphere(2);
+  const Shape rough = scrambled(torus(30, 12), 0.3, 15, onto_torus(1, 0.4));
+  for(const double k : {0.5, 2.})
+  {
+    Mesh mesh = make_mesh<Mesh>(rough);
+    const Mesh reference = make_mesh<Mesh>(torus(30, 12));
+    Options options;
+    options.iterations = 5;
+    const Outcome out =
+      run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(k), options);
+    const Measures m = check_outcome(out, k);
+    RCO_CHECK_LESS(smallest_angle(rough) + 5, m.smallest_angle);
+  }
+}
+
+// ---------------------------------------------------------------------------------- real data
+
+bool test_data(const std::string& name, unsigned int iterations)
+{
+  const Scope scope(name);
+#ifdef RCO_DATA_DIR
+  const Shape shape = read_off(std::string(RCO_DATA_DIR) + "/" + name);
+#else
+  const Shape shape;
+#endif
+  if(shape.faces.empty())
+  {
+    std::cout << name << " was not found, skipped" << std::endl;
+    return false;
+  }
+  Options options;
+  options.iterations = iterations;
+  Mesh mesh = make_mesh<Mesh>(shape);
+  const Mesh reference = mesh;
+  const Outcome out = run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
+  const Measures after = check_outcome(out);
+  const double before = smallest_angle(out.before);
+  RCO_CHECK_EQUAL(out.result.largest_initial_distance, 0.);
+  RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+  RCO_CHECK_LESS_EQUAL(out.result.number_of_flips, out.result.initial_number_of_flips);
+  RCO_CHECK_LESS_EQUAL(out.result.number_of_fold_edges, out.result.initial_number_of_fold_edges);
+  RCO_CHECK_LESS_EQUAL(before * (1 - 1e-9), after.smallest_angle);
+  RCO_CHECK_LESS(mean_smallest_angle(out.before), after.mean_angle);
+  std::cout << name << ": smallest angle " << before << " -> " << after.smallest_angle << ", mean "
+            << mean_smallest_angle(out.before) << " -> " << after.mean_angle << ", "
+            << out.result.number_of_iterations << " iterations, " << out.result.running_time << " s"
+            << std::endl;
+  return true;
+}
+
+int main()
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto timed = [&](const char* name, const std::function<void()>& test) {
+    test();
+    std::cout << "[" << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
+              << " s] " << name << std::endl;
+  };
+  timed("recoveries", test_recoveries);
+  timed("quads", test_quads);
+  timed("small meshes", test_small_meshes);
+  timed("constraints", test_constraints);
+  timed("degenerate faces", test_degenerate_faces);
+  timed("thin sheet", test_thin_sheet);
+  timed("determinism", test_determinism);
+  timed("mesh types", test_mesh_types);
+  timed("endings", test_endings);
+  timed("exponents", test_exponents);
+  timed("data", [] {
+    test_data("blobby.off", 6);
+    test_data("elephant.off", 4);
+    test_data("mesh_with_border.off", 6);
+    test_data("cow.off", 3);
+  });
+  return report();
+}

@@ -1,0 +1,400 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Named parameters in all their spellings, and the refusal of what cannot be used.
+
+#include "test_meshes.h"
+
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Polyhedron_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <cstring>
+#include <limits>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+namespace tags = CGAL::Reference_constrained_optimization::internal_np;
+namespace params = CGAL::parameters;
+using namespace rco_test;
+
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef Kernel::Point_3 Point;
+typedef CGAL::Surface_mesh<Point> Mesh;
+typedef boost::graph_traits<Mesh>::vertex_descriptor Vertex;
+
+// ------------------------------------------------------------------------ chains of parameters
+
+template <typename Tag, typename Parameters>
+auto parameter(const Parameters& np, const Tag& tag)
+{
+  return params::get_parameter(internal::cgal_parameters(np), tag);
+}
+
+void test_chains()
+{
+  const Scope scope("chains of named parameters");
+  {
+    const auto np = params::developability_threshold(0.1).drift_bound(0.2).number_of_iterations(5);
+    RCO_CHECK_EQUAL(parameter(np, tags::developability_threshold), 0.1);
+    RCO_CHECK_EQUAL(parameter(np, tags::drift_bound), 0.2);
+    RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::number_of_iterations), 5);
+  }
+  // every one of ours may come first ...
+  RCO_CHECK_EQUAL(parameter(params::developability_threshold(0.3), tags::developability_threshold), 0.3);
+  RCO_CHECK_EQUAL(parameter(params::energy_tolerance(0.01), tags::energy_tolerance), 0.01);
+  RCO_CHECK_EQUAL(parameter(params::drift_bound(2.), tags::drift_bound), 2.);
+  RCO_CHECK_EQUAL(parameter(params::use_on_surface_steps(false), tags::use_on_surface_steps), false);
+  RCO_CHECK_EQUAL(parameter(params::use_finishing_stage(false), tags::use_finishing_stage), false);
+  RCO_CHECK_EQUAL(parameter(params::vertex_location_map(7), tags::vertex_location_map), 7);
+  RCO_CHECK_EQUAL(parameter(params::maximum_patch_size(50), tags::maximum_patch_size), 50);
+  // ... and each may follow, in one chain and in the reverse order
+  {
+    const auto np = params::developability_threshold(0.3)
+                      .energy_tolerance(0.01)
+                      .drift_bound(2.)
+                      .use_on_surface_steps(false)
+                      .use_finishing_stage(true)
+                      .vertex_location_map(7)
+                      .maximum_patch_size(50)
+                      .random_seed(9)
+                      .relax_constraints(true);
+    RCO_CHECK_EQUAL(parameter(np, tags::developability_threshold), 0.3);
+    RCO_CHECK_EQUAL(parameter(np, tags::energy_tolerance), 0.01);
+    RCO_CHECK_EQUAL(parameter(np, tags::drift_bound), 2.);
+    RCO_CHECK_EQUAL(parameter(np, tags::use_on_surface_steps), false);
+    RCO_CHECK_EQUAL(parameter(np, tags::use_finishing_stage), true);
+    RCO_CHECK_EQUAL(parameter(np, tags::vertex_location_map), 7);
+    RCO_CHECK_EQUAL(parameter(np, tags::maximum_patch_size), 50);
+    RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::random_seed), 9);
+    RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::relax_constraints), true);
+  }
+  {
+    const auto np = params::maximum_patch_size(50)
+                      .vertex_location_map(7)
+                      .use_finishing_stage(true)
+                      .use_on_surface_steps(false)
+                      .drift_bound(2.)
+                      .energy_tolerance(0.01)
+                      .developability_threshold(0.3);
+    RCO_CHECK_EQUAL(parameter(np, tags::developability_threshold), 0.3);
+    RCO_CHECK_EQUAL(parameter(np, tags::maximum_patch_size), 50);
+    RCO_CHECK_EQUAL(parameter(np, tags::drift_bound), 2.);
+  }
+  // what they mean to the loop
+  const internal::Loop_parameters standard =
+    internal::read_loop_parameters(internal::cgal_parameters(params::default_values()));
+  const internal::Loop_parameters untouched;
+  RCO_CHECK_EQUAL(standard.number_of_iterations, std::size_t(30));
+  RCO_CHECK_EQUAL(standard.random_seed, 0u);
+  RCO_CHECK_EQUAL(standard.selection.developability_threshold, 0.25);
+  RCO_CHECK_EQUAL(standard.selection.maximum_patch_size, untouched.selection.maximum_patch_size);
+  RCO_CHECK_EQUAL(standard.energy_tolerance, untouched.energy_tolerance);
+  RCO_CHECK_EQUAL(standard.maximum_running_time, std::numeric_limits<double>::infinity());
+  const internal::Loop_parameters read = internal::read_loop_parameters(
+    internal::cgal_parameters(params::maximum_patch_size(50)
+                                .energy_tolerance(0.01)
+                                .developability_threshold(0.3)
+                                .maximum_running_time(12.5)
+                                .number_of_iterations(4)
+                                .random_seed(8)));
+  RCO_CHECK_EQUAL(read.number_of_iterations, std::size_t(4));
+  RCO_CHECK_EQUAL(read.random_seed, 8u);
+  RCO_CHECK_EQUAL(read.selection.developability_threshold, 0.3);
+  RCO_CHECK_EQUAL(read.selection.maximum_patch_size, 50);
+  RCO_CHECK_EQUAL(read.energy_tolerance, 0.01);
+  RCO_CHECK_EQUAL(read.maximum_running_time, 12.5);
+  const internal::Loop_parameters of_cgal =
+    internal::read_loop_parameters(internal::cgal_parameters(params::random_seed(3)));
+  RCO_CHECK_EQUAL(of_cgal.random_seed, 3u);
+}
+
+// ------------------------------------------------------------------------- calls with parameters
+
+struct Patch_sizes : RCO::Default_visitor
+{
+  std::size_t largest = 0, patches = 0;
+  void on_patch_end(const RCO::Patch_report& r)
+  {
+    ++patches;
+    largest = (std::max)(largest, r.number_of_faces);
+  }
+};
+
+void test_calls()
+{
+  const Scope scope("calls");
+  const Shape regular = icosphere(2), rough = scrambled(regular, 0.3, 1, onto_sphere);
+  const Mesh reference = make_mesh<Mesh>(regular), start = make_mesh<Mesh>(rough);
+  const RCO::Minimum_angle_energy energy;
+
+  Mesh mesh = start;
+  const RCO::Result plain = CGAL::reference_constrained_optimize(mesh, reference, energy);
+  const Shape expected = make_shape(mesh);
+  const auto same = [&](const Mesh& m) {
+    const Shape s = make_shape(m);
+    for(std::size_t v = 0; v < s.points.size(); ++v)
+      if(s.points[v] != expected.points[v])
+        return false;
+    return true;
+  };
+  RCO_CHECK_LESS(plain.final_energy, plain.initial_energy);
+
+  // the default, said aloud; a single name of CGAL's; for the reference, too
+  mesh = start;
+  CGAL::reference_constrained_optimize(mesh, reference, energy, params::default_values());
+  RCO_CHECK(same(mesh));
+  mesh = start;
+  CGAL::reference_constrained_optimize(mesh, reference, energy, params::random_seed(0),
+                                       params::default_values());
+  RCO_CHECK(same(mesh));
+  mesh = start;
+  CGAL::reference_constrained_optimize<CGAL::Sequential_tag>(
+    mesh, reference, energy,
+    params::developability_threshold(0.25).geom_traits(Kernel()).number_of_iterations(30),
+    params::vertex_point_map(get(CGAL::vertex_point, reference)));
+  RCO_CHECK(same(mesh));
+
+  // points kept elsewhere: those of the mesh itself neither matter nor change
+  mesh = start;
+  Mesh shifted = make_mesh<Mesh>(rough), shifted_reference = make_mesh<Mesh>(regular);
+  auto points = shifted.add_property_map<Vertex, Point>("v:elsewhere").first;
+  auto reference_points = shifted_reference.add_property_map<Vertex, Point>("v:elsewhere").first;
+  for(const Vertex v : shifted.vertices())
+  {
+    points[v] = shifted.point(v);
+    reference_points[v] = shifted_reference.point(v);
+    shifted.point(v) = shifted_reference.point(v) = Point(1, 2, 3);
+  }
+  CGAL::reference_constrained_optimize(shifted, shifted_reference, energy,
+                                       params::vertex_point_map(points),
+                                       params::vertex_point_map(reference_points));
+  for(const Vertex v : shifted.vertices())
+  {
+    RCO_CHECK(shifted.point(v) == Point(1, 2, 3));
+    mesh.point(v) = points[v];
+  }
+  RCO_CHECK(same(mesh));
+
+  // a visitor by value and by reference, small patches, few iterations
+  mesh = start;
+  CGAL::reference_constrained_optimize(mesh, reference, energy, params::visitor(Patch_sizes()));
+  RCO_CHECK(same(mesh));
+  Patch_sizes sizes;
+  mesh = start;
+  const RCO::Result small = CGAL::reference_constrained_optimize(
+    mesh, reference, energy,
+    params::maximum_patch_size(25).number_of_iterations(2).visitor(std::ref(sizes)));
+  RCO_CHECK_LESS_EQUAL(sizes.largest, std::size_t(25));
+  RCO_CHECK_EQUAL(sizes.patches, small.number_of_patches);
+  RCO_CHECK_LESS_EQUAL(small.number_of_iterations, std::size_t(2));
+  RCO_CHECK_LESS(10., double(small.number_of_patches));
+  mesh = start;
+  const RCO::Result loose = CGAL::reference_constrained_optimize(
+    mesh, reference, energy, params::energy_tolerance(0.9));
+  RCO_CHECK_LESS_EQUAL(loose.number_of_iterations, plain.number_of_iterations);
+
+  // names whose stages are not there yet do no harm
+  mesh = start;
+  CGAL::reference_constrained_optimize(
+    mesh, reference, energy,
+    params::use_on_surface_steps(false).use_finishing_stage(false).drift_bound(
+      std::numeric_limits<double>::infinity()));
+  RCO_CHECK(same(mesh));
+}
+
+// --------------------------------------------------------------------------------- bad input
+
+// the call throws Invalid_input with `text` in its message, and leaves every bit of the mesh alone
+template <typename M, typename R, typename Energy, typename NamedParameters>
+void refuses(M& mesh, const R& reference, const Energy& energy, const NamedParameters& np, const std::string& text)
+{
+  const Shape before = make_shape(mesh);
+  RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(mesh, reference, energy, np),
+                   RCO::Invalid_input, text);
+  const Shape after = make_shape(mesh);
+  RCO_CHECK_EQUAL(before.points.size(), after.points.size());
+  for(std::size_t v = 0; v < before.points.size(); ++v)
+    RCO_CHECK(std::memcmp(before.points[v].data(), after.points[v].data(), 3 * sizeof(double)) == 0);
+  RCO_CHECK(before.faces == after.faces);
+}
+
+template <typename M>
+void test_bad_meshes()
+{
+  const RCO::Minimum_angle_energy energy;
+  const auto np = params::default_values();
+  const Shape sphere = icosphere(1);
+  const Shape rough = scrambled(sphere, 0.2, 2, onto_sphere);
+  const M reference = make_mesh<M>(sphere);
+  {
+    const Scope scope("empty meshes");
+    M mesh;
+    refuses(mesh, reference, energy, np, "mesh: the mesh has no face");
+    Shape isolated;
+    isolated.add(1, 2, 3);
+    mesh = make_mesh<M>(isolated);
+    refuses(mesh, reference, energy, np, "mesh: the mesh has no face");
+    mesh = make_mesh<M>(rough);
+    refuses(mesh, M(), energy, np, "reference: the mesh has no face");
+  }
+  for(const double value : {std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity(),
+                            -std::numeric_limits<double>::infinity()})
+    for(const int coordinate : {0, 1, 2})
+    {
+      const Scope scope("not finite");
+      Shape bad = rough;
+      bad.points[17](coordinate) = value;
+      M mesh = make_mesh<M>(bad);
+      refuses(mesh, reference, energy, np, "mesh: vertex 17 ");
+      M good = make_mesh<M>(rough);
+      refuses(good, mesh, energy, np, "reference: vertex 17 ");
+    }
+  {
+    const Scope scope("faces that are not triangles");
+    Shape mixed = plane_grid(3, 3);
+    const int top = mixed.add(1. / 3, 2, 0), right = mixed.add(2. / 3, 2, 0);
+    mixed.faces.push_back({13, 14, right, top}); // a quad, on the upper border
+    M mesh = make_mesh<M>(mixed);
+    refuses(mesh, mesh, energy, np, "face 18 has 4 vertices");
+    const int far = mixed.add(0.5, 2.5, 0);
+    mixed.faces.back() = {13, 14, right, far, top};
+    mesh = make_mesh<M>(mixed);
+    refuses(mesh, mesh, energy, np, "face 18 has 5 vertices");
+    M good = make_mesh<M>(plane_grid(3, 3));
+    refuses(good, mesh, energy, np, "reference: face 18 has 5 vertices");
+  }
+  {
+    const Scope scope("far from the reference");
+    Shape bad = rough;
+    bad.points[23] *= 2;
+    M mesh = make_mesh<M>(bad);
+    refuses(mesh, reference, energy, np, "mesh: vertex 23 ");
+    // a little is fine, and is told
+    bad = rough;
+    bad.points[23] *= 1.05;
+    mesh = make_mesh<M>(bad);
+    const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, energy);
+    RCO_CHECK(r.largest_initial_distance > 0.05 && r.largest_initial_distance < 0.2);
+  }
+  {
+    const Scope scope("a reference without area");
+    Shape flat;
+    for(int i = 0; i < 3; ++i)
+      flat.add(i, 0, 0);
+    flat.triangle(0, 1, 2);
+    M mesh = make_mesh<M>(rough);
+    refuses(mesh, make_mesh<M>(flat), energy, np, "reference: every face has zero area");
+  }
+}
+
+// two fans that share their middle, as a Surface_mesh can hold them
+Mesh two_fans(bool closed)
+{
+  Mesh mesh;
+  std::vector<Vertex> middles, all;
+  for(const double z : {1., -1.})
+  {
+    if(closed || z > 0)
+      middles.push_back(mesh.add_vertex(Point(0, 0, 0)));
+    all.clear();
+    for(int i = 0; i < 4; ++i)
+      all.push_back(mesh.add_vertex(Point(std::cos(pi * i / 2), std::sin(pi * i / 2), z)));
+    for(int i = 0; i < (closed ? 4 : 3); ++i)
+      if(z > 0)
+        mesh.add_face(middles.back(), all[i], all[(i + 1) % 4]);
+      else
+        mesh.add_face(middles.back(), all[(i + 1) % 4], all[i]);
+  }
+  if(closed)
+  {
+    std::vector<Mesh::Halfedge_index> to_second;
+    for(const Mesh::Halfedge_index h : CGAL::halfedges_around_target(middles[1], mesh))
+      to_second.push_back(h);
+    for(const Mesh::Halfedge_index h : to_second)
+      mesh.set_target(h, middles[0]);
+    mesh.set_halfedge(middles[1], Mesh::null_halfedge());
+  }
+  return mesh;
+}
+
+struct Bad_energy
+{
+  typedef RCO::Exponential_MIPS_density Density;
+  explicit Bad_energy(int w) : what(w) {}
+  int what;
+  Density m_density;
+  const Density& density() const { return m_density; }
+  void append_elements(const RCO::Energy_context&, std::size_t f, std::vector<RCO::Energy_element>& elements) const
+  {
+    RCO::Energy_element e;
+    if(f == 5 && what == 1)
+      e.rest << 1, 2, 2, 4;
+    if(f == 5 && what == 2)
+      e.rest << 0, 1, 1, 0;
+    if(f == 5 && what == 3)
+      e.rest(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    if(f == 5 && what == 4)
+      e.corners[1] = 3;
+    if(what != 5)
+      elements.push_back(e);
+  }
+};
+
+void test_bad_data()
+{
+  test_bad_meshes<Mesh>();
+  test_bad_meshes<CGAL::Polyhedron_3<Kernel>>();
+
+  const RCO::Minimum_angle_energy energy;
+  const Mesh reference = make_mesh<Mesh>(icosphere(1));
+  Mesh mesh = make_mesh<Mesh>(icosphere(1));
+  const auto np = params::default_values();
+  {
+    const Scope scope("not manifold");
+    for(const bool closed : {false, true})
+    {
+      Mesh fans = two_fans(closed);
+      RCO_CHECK_EQUAL(fans.number_of_faces(), Mesh::size_type(closed ? 8 : 6));
+      refuses(fans, fans, energy, np, "mesh: vertex 0 is not manifold");
+      Mesh good = make_mesh<Mesh>(cone(8, 2, 0.5));
+      refuses(good, fans, energy, np, "reference: vertex 0 is not manifold");
+    }
+  }
+  {
+    const Scope scope("bad energies");
+    for(const int what : {1, 2, 3, 4})
+      refuses(mesh, reference, Bad_energy(what), np, "face 5");
+    refuses(mesh, reference, Bad_energy(5), np, "no element");
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for(const double factor : {0., -1., nan, std::numeric_limits<double>::infinity()})
+      RCO_CHECK_THROWS(RCO::Minimum_angle_energy{factor}, RCO::Invalid_input, "exponent factor");
+  }
+  {
+    const Scope scope("bad parameters");
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for(const double value : {-0.1, 0., nan})
+    {
+      refuses(mesh, reference, energy, params::developability_threshold(value), "developability_threshold");
+      refuses(mesh, reference, energy, params::maximum_running_time(value), "maximum_running_time");
+    }
+    for(const double value : {-1e-9, nan})
+      refuses(mesh, reference, energy, params::energy_tolerance(value), "energy_tolerance");
+    refuses(mesh, reference, energy, params::maximum_patch_size(-1), "maximum_patch_size");
+  }
+  // an error is an std::invalid_argument, too
+  const std::invalid_argument& as_standard = RCO::Invalid_input("text");
+  RCO_CHECK_EQUAL(std::string(as_standard.what()), std::string("text"));
+}
+
+int main()
+{
+  test_chains();
+  test_calls();
+  test_bad_data();
+  return report();
+}

@@ -1,0 +1,542 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Cone proxies, the disk guard, and the growing of patches.
+
+#include "test_util.h"
+
+#include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
+
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+using namespace rco_test;
+
+Eigen::Matrix3d turn(Random& random)
+{
+  const Vector_3 axis = random.in_cube(1).normalized();
+  return Eigen::AngleAxisd(random(0, 6), axis).toRotationMatrix();
+}
+
+internal::Face_geometry geometry_of(const Shape& shape, const Indexed_mesh& mesh)
+{
+  internal::Face_geometry geometry;
+  geometry.update(mesh, shape.points);
+  return geometry;
+}
+
+// the proxy of all faces of a shape
+internal::Cone_proxy proxy_of(const Shape& shape)
+{
+  const Indexed_mesh mesh = indexed(shape);
+  const internal::Face_geometry geometry = geometry_of(shape, mesh);
+  internal::Cone_proxy_fit fit;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+    fit.add(geometry.normals[f], geometry.areas[f]);
+  const internal::Cone_proxy proxy = fit.fit();
+  // its mean cost is the mean of its costs
+  double sum = 0, area = 0;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    sum += geometry.areas[f] * proxy.cost(geometry.normals[f]);
+    area += geometry.areas[f];
+  }
+  RCO_CHECK_NEAR(proxy.mean_cost, sum / area, 1e-10);
+  RCO_CHECK_NEAR(proxy.axis.norm(), 1., 1e-12);
+  RCO_CHECK(proxy.cosine >= 0 && proxy.cosine <= 1 + 1e-12);
+  return proxy;
+}
+
+Shape rotated(Shape shape, const Eigen::Matrix3d& r)
+{
+  for(Vector_3& p : shape.points)
+    p = r * p;
+  return shape;
+}
+
+void test_cone_proxy()
+{
+  const Scope scope("cone proxy");
+  Random random(1);
+  for(int i = 0; i < 20; ++i)
+  {
+    const Eigen::Matrix3d r = turn(random);
+    const Vector_3 z = r.col(2);
+
+    const internal::Cone_proxy plane = proxy_of(rotated(plane_grid(4, 3), r));
+    RCO_CHECK_LESS_EQUAL((plane.axis - z).norm(), 1e-6);
+    RCO_CHECK_NEAR(plane.cosine, 1., 1e-9);
+    RCO_CHECK_LESS_EQUAL(plane.mean_cost, 1e-12);
+
+    for(const double part : {1., 0.3})
+    {
+      const internal::Cone_proxy tube =
+        proxy_of(rotated(cylinder(20, 3, 0.5, 1, 2 * pi * part), r));
+      RCO_CHECK_LESS_EQUAL(tube.axis.cross(z).norm(), 1e-6);
+      RCO_CHECK_NEAR(tube.cosine, 0., 1e-6);
+      RCO_CHECK_LESS_EQUAL(tube.mean_cost, 1e-9);
+    }
+
+    const double half_angle = random(0.2, 1.2);
+    const int sides = 24;
+    const internal::Cone_proxy hat = proxy_of(rotated(cone(sides, 4, half_angle), r));
+    // the planes of a pyramid with that many sides touch a slightly narrower cone
+    const double slope = std::tan(half_angle) * std::cos(pi / sides);
+    RCO_CHECK_LESS_EQUAL((hat.axis - z).norm(), 1e-5);
+    RCO_CHECK_NEAR(hat.cosine, slope / std::sqrt(1 + slope * slope), 1e-6);
+    RCO_CHECK_NEAR(hat.cosine, std::sin(half_angle), 0.01);
+    RCO_CHECK_LESS_EQUAL(hat.mean_cost, 1e-9);
+    // part of it suffices
+    const internal::Cone_proxy slice =
+      proxy_of(rotated(cone(sides, 4, half_angle, 0.2, 1, 2 * pi * 0.4), r));
+    RCO_CHECK_LESS_EQUAL((slice.axis - z).norm(), 1e-3);
+    RCO_CHECK_LESS_EQUAL(slice.mean_cost, 1e-6);
+  }
+
+  // a cap of a sphere: heights are distributed evenly, so the cost is the variance of an interval
+  for(const double angle : {0.3, 0.8, 1.3})
+  {
+    internal::Cone_proxy_fit fit;
+    const int rings = 400, columns = 36;
+    const double low = std::cos(angle);
+    for(int j = 0; j < rings; ++j)
+      for(int i = 0; i < columns; ++i)
+      {
+        const double h = low + (1 - low) * (j + 0.5) / rings, a = 2 * pi * i / columns;
+        const double rho = std::sqrt(1 - h * h);
+        fit.add(Vector_3(rho * std::cos(a), rho * std::sin(a), h), 0.7);
+      }
+    const internal::Cone_proxy cap = fit.fit();
+    RCO_CHECK_LESS_EQUAL((cap.axis - Vector_3::UnitZ()).norm(), 1e-9);
+    RCO_CHECK_NEAR(cap.cosine, 0.5 * (1 + low), 1e-9);
+    RCO_CHECK_NEAR(cap.mean_cost, (1 - low) * (1 - low) / 12, 1e-6);
+  }
+
+  // no axis with its best cosine does better
+  for(int i = 0; i < 50; ++i)
+  {
+    std::vector<Vector_3> normals;
+    std::vector<double> areas;
+    internal::Cone_proxy_fit fit;
+    double total = 0;
+    const Vector_3 middle = random.in_cube(1);
+    for(int k = 0; k < 12; ++k)
+    {
+      normals.push_back((middle + random.in_cube(1)).normalized());
+      areas.push_back(random(0.1, 2));
+      total += areas.back();
+      fit.add(normals.back(), areas.back());
+    }
+    const internal::Cone_proxy best = fit.fit();
+    for(int k = 0; k < 500; ++k)
+    {
+      internal::Cone_proxy other;
+      other.axis = random.in_cube(1).normalized();
+      other.cosine = 0;
+      for(int j = 0; j < 12; ++j)
+        other.cosine += areas[j] / total * other.axis.dot(normals[j]);
+      double cost = 0;
+      for(int j = 0; j < 12; ++j)
+        cost += areas[j] / total * other.cost(normals[j]);
+      RCO_CHECK_LESS_EQUAL(best.mean_cost, cost + 2e-6);
+    }
+  }
+  // nothing to fit, or faces without area only
+  internal::Cone_proxy_fit empty;
+  RCO_CHECK(empty.fit().axis.allFinite());
+  empty.add(Vector_3::Zero(), 0);
+  RCO_CHECK(empty.fit().axis.allFinite());
+}
+
+// ------------------------------------------------------------------------------------------
+
+// Whether some faces are a disk, told from nothing but their lists of vertices.
+bool is_disk(const Indexed_mesh& mesh, const std::vector<int>& faces)
+{
+  std::set<int> all_vertices;
+  std::map<std::pair<int, int>, int> uses; // of undirected edges
+  std::map<int, std::vector<std::pair<int, int>>> links; // per vertex: previous and next, per face
+  for(const int f : faces)
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+    {
+      const int s = mesh.source(c), t = mesh.target(c), p = mesh.source(mesh.previous(c));
+      all_vertices.insert(s);
+      ++uses[{(std::min)(s, t), (std::max)(s, t)}];
+      links[s].push_back({p, t});
+    }
+  const int euler = int(all_vertices.size()) - int(uses.size()) + int(faces.size());
+  if(euler != 1)
+    return false;
+
+  // faces at a vertex form one fan: glued along equal neighbours they are one piece
+  for(const auto& link : links)
+  {
+    std::vector<char> seen(link.second.size(), 0);
+    std::vector<std::size_t> stack(1, 0);
+    seen[0] = 1;
+    std::size_t count = 0;
+    while(!stack.empty())
+    {
+      const auto here = link.second[stack.back()];
+      stack.pop_back();
+      ++count;
+      for(std::size_t k = 0; k < link.second.size(); ++k)
+        if(!seen[k] && (link.second[k].first == here.second || link.second[k].second == here.first))
+        {
+          seen[k] = 1;
+          stack.push_back(k);
+        }
+    }
+    if(count != link.second.size())
+      return false;
+  }
+
+  // the border is one loop
+  std::map<int, std::vector<int>> border;
+  for(const auto& u : uses)
+    if(u.second == 1)
+    {
+      border[u.first.first].push_back(u.first.second);
+      border[u.first.second].push_back(u.first.first);
+    }
+    else if(u.second != 2)
+      return false;
+  if(border.empty())
+    return false;
+  for(const auto& b : border)
+    if(b.second.size() != 2)
+      return false;
+  const int start = border.begin()->first;
+  int previous = start, at = border[start][0];
+  std::size_t length = 1;
+  while(at != start)
+  {
+    const int next = border[at][0] == previous ? border[at][1] : border[at][0];
+    previous = at;
+    at = next;
+    ++length;
+  }
+  return length == border.size();
+}
+
+// keeps_disk() against the definition, for every face beside random disks
+void test_disk_guard(const Shape& shape, const std::string& name)
+{
+  const Scope scope("disk guard on " + name);
+  const Indexed_mesh mesh = indexed(shape);
+  const int n = mesh.number_of_faces();
+  Random random(2);
+  int refused = 0, allowed = 0;
+  for(int trial = 0; trial < 25; ++trial)
+  {
+    std::vector<int> patch;
+    std::vector<char> in_patch(n, 0), has_vertex(shape.points.size(), 0);
+    const auto add = [&](int f) {
+      patch.push_back(f);
+      in_patch[f] = 1;
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        has_vertex[mesh.corner_vertex[c]] = 1;
+    };
+    add(random.index(n));
+    const int goal = 1 + random.index((std::min)(n, 80));
+    while(true)
+    {
+      std::vector<int> growing;
+      for(int f = 0; f < n; ++f)
+      {
+        bool is_beside = false;
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          is_beside = is_beside || (mesh.opposite[c] >= 0 && in_patch[mesh.corner_face[mesh.opposite[c]]]);
+        if(in_patch[f] || !is_beside)
+          continue;
+        std::vector<int> larger(patch);
+        larger.push_back(f);
+        const bool expected = is_disk(mesh, larger);
+        const bool keeps = internal::keeps_disk(
+          mesh, f, [&](int g) { return in_patch[g] != 0; },
+          [&](int v) { return has_vertex[v] != 0; });
+        RCO_CHECK_EQUAL(keeps, expected);
+        (expected ? allowed : refused) += 1;
+        if(expected)
+          growing.push_back(f);
+      }
+      if(growing.empty() || int(patch.size()) >= goal)
+        break;
+      add(growing[random.index(int(growing.size()))]);
+    }
+  }
+  RCO_CHECK(allowed > 0 || n < 2);
+  // a strip refuses nothing
+  RCO_CHECK(refused > 0 || name == "two triangles" || name == "a strip");
+}
+
+// vertices of edges between the patch and other faces
+std::set<int> boundary_vertices(const Indexed_mesh& mesh, const std::vector<int>& patch)
+{
+  const std::set<int> inside(patch.begin(), patch.end());
+  std::set<int> result;
+  for(const int f : patch)
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(mesh.opposite[c] >= 0 && inside.count(mesh.corner_face[mesh.opposite[c]]) == 0)
+      {
+        result.insert(mesh.source(c));
+        result.insert(mesh.target(c));
+      }
+  return result;
+}
+
+// faces outside the 2-ring of the boundary to other faces, and the seed, by the definition
+std::set<int> touched_by_definition(const Indexed_mesh& mesh, const std::vector<int>& patch)
+{
+  std::set<int> near = boundary_vertices(mesh, patch);
+  const auto touches = [&](int f) {
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(near.count(mesh.corner_vertex[c]) != 0)
+        return true;
+    return false;
+  };
+  std::set<int> first_ring;
+  for(const int f : patch)
+    if(touches(f))
+      first_ring.insert(f);
+  for(const int f : first_ring)
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      near.insert(mesh.corner_vertex[c]);
+  std::set<int> result = {patch.front()};
+  for(const int f : patch)
+    if(!touches(f))
+      result.insert(f);
+  return result;
+}
+
+const auto nothing_taken = [](int) { return false; };
+
+// What holds for every patch, on any mesh. Returns the size of the largest.
+std::size_t test_growing(const Shape& shape, const std::string& name)
+{
+  const Scope scope("patches on " + name);
+  const Indexed_mesh mesh = indexed(shape);
+  const internal::Face_geometry geometry = geometry_of(shape, mesh);
+  const int n = mesh.number_of_faces();
+  std::size_t largest = 0;
+  for(const double threshold : {0.02, 0.25, 10.})
+    for(const int cap : {1, 3, 40, 100000})
+    {
+      internal::Selection_parameters parameters;
+      parameters.developability_threshold = threshold;
+      parameters.maximum_patch_size = cap;
+      internal::Patch_selection selection(mesh, parameters);
+      Random random(3);
+      for(int trial = 0; trial < (std::min)(n, 12); ++trial)
+      {
+        const int seed = n <= 12 ? trial : random.index(n);
+        std::vector<char> taken(n, 0);
+        if(trial % 3 == 2)
+          for(int f = 0; f < n; ++f)
+            taken[f] = f != seed && random() < 0.05;
+        const auto is_taken = [&](int f) { return taken[f] != 0; };
+        const std::vector<int> patch = selection.grow(seed, geometry, is_taken);
+        if(!RCO_CHECK(!patch.empty() && patch.front() == seed))
+          continue;
+        RCO_CHECK_LESS_EQUAL(int(patch.size()), cap);
+        RCO_CHECK(is_disk(mesh, patch));
+        // it is a disk at any time
+        for(const double part : {0.2, 0.5, 0.8})
+        {
+          const std::size_t size = 1 + std::size_t(part * double(patch.size() - 1));
+          RCO_CHECK(is_disk(mesh, std::vector<int>(patch.begin(), patch.begin() + size)));
+        }
+        RCO_CHECK_EQUAL(std::set<int>(patch.begin(), patch.end()).size(), patch.size());
+        for(const int f : patch)
+          RCO_CHECK(!taken[f]);
+        // the same again, also in an object that has done nothing else
+        RCO_CHECK(selection.grow(seed, geometry, is_taken) == patch);
+        internal::Patch_selection fresh(mesh, parameters);
+        RCO_CHECK(fresh.grow(seed, geometry, is_taken) == patch);
+        const std::set<int> expected = touched_by_definition(mesh, patch);
+        const std::vector<int> once = fresh.touched(patch);
+        RCO_CHECK(std::set<int>(once.begin(), once.end()) == expected);
+        RCO_CHECK_EQUAL(once.size(), expected.size());
+        // an object that has seen more patches may be done with more faces
+        const std::vector<int> again = selection.touched(patch);
+        const std::set<int> again_set(again.begin(), again.end());
+        const std::set<int> all(patch.begin(), patch.end());
+        RCO_CHECK_EQUAL(again_set.size(), again.size());
+        RCO_CHECK(std::includes(again_set.begin(), again_set.end(), expected.begin(), expected.end()));
+        RCO_CHECK(std::includes(all.begin(), all.end(), again_set.begin(), again_set.end()));
+        largest = (std::max)(largest, patch.size());
+      }
+    }
+  return largest;
+}
+
+void test_patches()
+{
+  const Shape sphere = icosphere(2);
+  const Shape holed =
+    without_faces(sphere, [](int f) { return (f >= 10 && f < 14) || f == 100 || f == 200; });
+  const Shape strip = plane_grid(1, 1);
+  const Shape pair = joined(plane_grid(6, 6), icosphere(1), Vector_3(5, 0, 0));
+  const std::vector<std::pair<std::string, Shape>> shapes = {
+    {"an annulus", annulus(12, 3)},
+    {"a thin annulus", annulus(8, 1)},
+    {"a tetrahedron", tetrahedron()},
+    {"an icosahedron", icosphere(0)},
+    {"a sphere", sphere},
+    {"a sphere with holes", holed},
+    {"a torus", torus(16, 8)},
+    {"a tube", cylinder(10, 6, 0.5, 1)},
+    {"a closed cylinder", closed_cylinder(10, 6, 0.5, 1)},
+    {"a cube", cube(4)},
+    {"two components", pair},
+    {"two triangles", strip},
+    {"a strip", plane_grid(12, 1)},
+    {"a plane", plane_grid(9, 9)},
+    {"quads", plane_grid(8, 7, 1, true)},
+    {"a double sheet", double_sheet(6, 1e-3)},
+  };
+  for(const auto& s : shapes)
+  {
+    test_disk_guard(s.second, s.first);
+    test_growing(s.second, s.first);
+  }
+  RCO_CHECK_EQUAL(test_growing(tetrahedron(), "a tetrahedron"), std::size_t(3));
+  RCO_CHECK_EQUAL(test_growing(strip, "two triangles"), std::size_t(2));
+  RCO_CHECK_EQUAL(test_growing(plane_grid(9, 9), "a plane"), std::size_t(162));
+  RCO_CHECK_EQUAL(test_growing(plane_grid(8, 7, 1, true), "quads"), std::size_t(56));
+  // a closed surface keeps a hole
+  const std::size_t on_sphere = test_growing(sphere, "a sphere");
+  RCO_CHECK(on_sphere > 200 && on_sphere < sphere.faces.size());
+}
+
+void test_touched()
+{
+  const Scope scope("touched");
+  internal::Selection_parameters parameters;
+  parameters.maximum_patch_size = 1000;
+  // the whole mesh is one patch: its own border is no boundary, so all is touched
+  const Shape plane = plane_grid(8, 8);
+  const Indexed_mesh mesh = indexed(plane);
+  internal::Patch_selection whole(mesh, parameters);
+  const std::vector<int> patch = whole.grow(30, geometry_of(plane, mesh), nothing_taken);
+  RCO_CHECK_EQUAL(patch.size(), plane.faces.size());
+  RCO_CHECK_EQUAL(whole.touched(patch).size(), plane.faces.size());
+  // a patch that is boundary all over touches its seed alone
+  parameters.maximum_patch_size = 4;
+  internal::Patch_selection tiny(mesh, parameters);
+  const std::vector<int> few = tiny.grow(60, geometry_of(plane, mesh), nothing_taken);
+  RCO_CHECK_EQUAL(few.size(), std::size_t(4));
+  RCO_CHECK(tiny.touched(few) == std::vector<int>(1, 60));
+}
+
+void test_threshold()
+{
+  const Scope scope("developability threshold");
+  internal::Selection_parameters parameters;
+  parameters.exempt_size = 0;
+  parameters.developability_threshold = 0.01;
+  // on a cube a patch that starts on flat ground stays on its side
+  const Shape box = cube(6);
+  const Indexed_mesh box_mesh = indexed(box);
+  const internal::Face_geometry box_geometry = geometry_of(box, box_mesh);
+  internal::Patch_selection on_box(box_mesh, parameters);
+  for(int seed = 0; seed < box_mesh.number_of_faces(); ++seed)
+  {
+    const std::vector<int> patch = on_box.grow(seed, box_geometry, nothing_taken);
+    bool is_flat = true;
+    for(int c = box_mesh.face_begin[seed]; c < box_mesh.face_begin[seed + 1]; ++c)
+    {
+      const int v = box_mesh.corner_vertex[c];
+      for(int k = box_mesh.vertex_begin[v]; k < box_mesh.vertex_begin[v + 1]; ++k)
+        is_flat = is_flat && box_geometry.normals[box_mesh.corner_face[box_mesh.vertex_corners[k]]].dot(
+                         box_geometry.normals[seed]) > 0.99;
+    }
+    if(!is_flat)
+      continue;
+    RCO_CHECK_EQUAL(patch.size(), std::size_t(72));
+    for(const int f : patch)
+      RCO_CHECK_LESS(0.99, box_geometry.normals[f].dot(box_geometry.normals[seed]));
+  }
+
+  // below the size at which the proxy is fitted anew all faces fit one of the seed's 1-rings
+  const Shape sphere = icosphere(3);
+  const Indexed_mesh mesh = indexed(sphere);
+  const internal::Face_geometry geometry = geometry_of(sphere, mesh);
+  Random random(4);
+  for(const int exempt : {0, 20})
+    for(const double threshold : {1e-4, 1e-3, 1e-2})
+    {
+      parameters.exempt_size = exempt;
+      parameters.developability_threshold = threshold;
+      parameters.maximum_patch_size = 127;
+      internal::Patch_selection selection(mesh, parameters);
+      for(int trial = 0; trial < 10; ++trial)
+      {
+        const int seed = random.index(mesh.number_of_faces());
+        const std::vector<int> patch = selection.grow(seed, geometry, nothing_taken);
+        RCO_CHECK_LESS_EQUAL((std::min)(exempt, 127), int(patch.size()));
+        bool some_proxy_fits = int(patch.size()) <= exempt;
+        for(int c = mesh.face_begin[seed]; c < mesh.face_begin[seed + 1]; ++c)
+        {
+          const int v = mesh.corner_vertex[c];
+          internal::Cone_proxy_fit fit;
+          for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+          {
+            const int f = mesh.corner_face[mesh.vertex_corners[k]];
+            fit.add(geometry.normals[f], geometry.areas[f]);
+          }
+          bool fits = true;
+          for(int i = exempt; i < int(patch.size()); ++i)
+            fits = fits && fit.fit().cost(geometry.normals[patch[i]]) < threshold;
+          some_proxy_fits = some_proxy_fits || fits;
+        }
+        RCO_CHECK(some_proxy_fits);
+      }
+    }
+
+  // a larger threshold lets patches grow on a sphere; a cylinder is developable, which is found out
+  // once the proxy is fitted to the patch itself
+  const auto mean_size = [&](const Shape& s, double threshold, int exempt) {
+    const Indexed_mesh m = indexed(s);
+    const internal::Face_geometry g = geometry_of(s, m);
+    internal::Selection_parameters p;
+    p.maximum_patch_size = 100000;
+    p.exempt_size = exempt;
+    p.developability_threshold = threshold;
+    internal::Patch_selection selection(m, p);
+    Random seeds(5);
+    double sum = 0;
+    for(int i = 0; i < 20; ++i)
+      sum += double(selection.grow(seeds.index(m.number_of_faces()), g, nothing_taken).size());
+    return sum / 20;
+  };
+  RCO_CHECK_LESS(mean_size(sphere, 0.001, 10), 0.5 * mean_size(sphere, 0.05, 10));
+  const Shape tube = cylinder(20, 40, 0.5, 4);
+  RCO_CHECK_LESS(0.8 * double(tube.faces.size()), mean_size(tube, 0.001, 300));
+  RCO_CHECK_LESS(mean_size(sphere, 0.001, 300), 0.7 * double(sphere.faces.size()));
+}
+
+// faces without area neither stop the growing nor break the geometry
+void test_degenerate_faces()
+{
+  const Scope scope("degenerate faces");
+  Shape shape = plane_grid(8, 8);
+  shape.points[40] = shape.points[41];
+  const Indexed_mesh mesh = indexed(shape);
+  const internal::Face_geometry geometry = geometry_of(shape, mesh);
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    RCO_CHECK(geometry.normals[f].allFinite());
+    RCO_CHECK(std::isfinite(geometry.areas[f]) && geometry.centroids[f].allFinite());
+  }
+  test_growing(shape, "a plane with faces of no area");
+}
+
+int main()
+{
+  test_cone_proxy();
+  test_patches();
+  test_touched();
+  test_threshold();
+  test_degenerate_faces();
+  return report();
+}

@@ -1,0 +1,600 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// What all tests share: checks that do not hang on NDEBUG, random numbers that are the same
+// everywhere, and meshes made by formulas.
+
+#ifndef RCO_TEST_UTIL_H
+#define RCO_TEST_UTIL_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rco_test {
+
+using CGAL::Reference_constrained_optimization::internal::Indexed_mesh;
+using CGAL::Reference_constrained_optimization::internal::Vector_2;
+using CGAL::Reference_constrained_optimization::internal::Vector_3;
+
+const double pi = 3.14159265358979323846;
+
+// ---------------------------------------------------------------------------------- checks
+
+struct Counts
+{
+  long checks = 0, failures = 0;
+  std::vector<std::string> scopes; // what is being tested, innermost last
+};
+
+inline Counts& counts()
+{
+  static Counts c;
+  return c;
+}
+
+// names what is being tested for as long as it lives
+class Scope
+{
+public:
+  explicit Scope(const std::string& name) { counts().scopes.push_back(name); }
+  ~Scope() { counts().scopes.pop_back(); }
+  Scope(const Scope&) = delete;
+  Scope& operator=(const Scope&) = delete;
+};
+
+inline bool
+check(bool holds, const char* expression, const std::string& values, const char* file, int line)
+{
+  Counts& c = counts();
+  ++c.checks;
+  if(holds)
+    return true;
+  // a loop that fails everywhere need not fill the screen
+  if(++c.failures <= 20)
+  {
+    std::cerr << file << ":" << line << ": FAILED " << expression;
+    if(!values.empty())
+      std::cerr << "  [" << values << "]";
+    for(const std::string& s : c.scopes)
+      std::cerr << "  in " << s;
+    std::cerr << std::endl;
+  }
+  return false;
+}
+
+template <typename A, typename B>
+std::string values(const A& a, const B& b)
+{
+  std::ostringstream out;
+  out.precision(17);
+  out << a << " and " << b;
+  return out.str();
+}
+
+// the exit code of a test
+inline int report()
+{
+  std::cout << counts().checks << " checks, " << counts().failures << " failures" << std::endl;
+  return counts().failures == 0 && counts().checks > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+#define RCO_CHECK(condition) \
+  ::rco_test::check(static_cast<bool>(condition), #condition, std::string(), __FILE__, __LINE__)
+
+#define RCO_CHECK_BINARY(a, b, op)                                                              \
+  [&](const auto& rco_a, const auto& rco_b) {                                                   \
+    const bool rco_holds = rco_a op rco_b;                                                      \
+    return ::rco_test::check(rco_holds, #a " " #op " " #b,                                      \
+                             rco_holds ? std::string() : ::rco_test::values(rco_a, rco_b),      \
+                             __FILE__, __LINE__);                                               \
+  }((a), (b))
+#define RCO_CHECK_EQUAL(a, b) RCO_CHECK_BINARY(a, b, ==)
+#define RCO_CHECK_LESS(a, b) RCO_CHECK_BINARY(a, b, <)
+#define RCO_CHECK_LESS_EQUAL(a, b) RCO_CHECK_BINARY(a, b, <=)
+
+// false for NaN, too
+#define RCO_CHECK_NEAR(a, b, tolerance)                                                         \
+  [&](double rco_a, double rco_b) {                                                             \
+    return ::rco_test::check(std::abs(rco_a - rco_b) <= (tolerance), #a " near " #b,            \
+                             ::rco_test::values(rco_a, rco_b), __FILE__, __LINE__);             \
+  }((a), (b))
+
+// `statement` throws `Exception`, and the message contains `text`
+#define RCO_CHECK_THROWS(statement, Exception, text)                                            \
+  do                                                                                            \
+  {                                                                                             \
+    std::string rco_message = "nothing was thrown";                                             \
+    bool rco_thrown = false;                                                                    \
+    try                                                                                         \
+    {                                                                                           \
+      statement;                                                                                \
+    }                                                                                           \
+    catch(const Exception& rco_e)                                                               \
+    {                                                                                           \
+      rco_thrown = true;                                                                        \
+      rco_message = rco_e.what();                                                               \
+    }                                                                                           \
+    catch(const std::exception& rco_e)                                                          \
+    {                                                                                           \
+      rco_message = std::string("another type was thrown: ") + rco_e.what();                    \
+    }                                                                                           \
+    ::rco_test::check(rco_thrown && rco_message.find(text) != std::string::npos,                \
+                      #statement " throws " #Exception " about " #text, rco_message, __FILE__,  \
+                      __LINE__);                                                                \
+  } while(false)
+
+// -------------------------------------------------------------------------- random numbers
+
+class Random
+{
+public:
+  explicit Random(std::uint64_t seed) : m_state(seed * 2862933555777941757ull + 3037000493ull)
+  {
+    bits();
+    bits();
+  }
+
+  // uniform in [0, 1)
+  double operator()() { return double(bits()) / 4294967296.; }
+  double operator()(double low, double high) { return low + (high - low) * (*this)(); }
+  // uniform in {0, ..., n - 1}
+  int index(int n) { return int((*this)() * n); }
+
+  Vector_3 in_cube(double half)
+  {
+    const double x = (*this)(-half, half), y = (*this)(-half, half), z = (*this)(-half, half);
+    return Vector_3(x, y, z);
+  }
+  // inside a triangle, uniformly
+  Vector_3 barycentric()
+  {
+    double a = (*this)(), b = (*this)();
+    if(a + b > 1)
+    {
+      a = 1 - a;
+      b = 1 - b;
+    }
+    return Vector_3(1 - a - b, a, b);
+  }
+
+private:
+  std::uint64_t bits()
+  {
+    m_state = m_state * 6364136223846793005ull + 1442695040888963407ull;
+    return m_state >> 32;
+  }
+
+  std::uint64_t m_state;
+};
+
+// ---------------------------------------------------------------------------------- shapes
+
+// A polygon mesh as points and faces.
+struct Shape
+{
+  std::vector<Vector_3> points;
+  std::vector<std::vector<int>> faces;
+
+  int add(double x, double y, double z)
+  {
+    points.push_back(Vector_3(x, y, z));
+    return int(points.size()) - 1;
+  }
+  void triangle(int a, int b, int c) { faces.push_back({a, b, c}); }
+  // a quad, split along its first diagonal or its second
+  void quad(int a, int b, int c, int d, bool second = false)
+  {
+    triangle(a, b, second ? d : c);
+    second ? triangle(b, c, d) : triangle(a, c, d);
+  }
+};
+
+inline Indexed_mesh indexed(const Shape& shape)
+{
+  std::vector<int> begins(1, 0), corners;
+  for(const std::vector<int>& f : shape.faces)
+  {
+    corners.insert(corners.end(), f.begin(), f.end());
+    begins.push_back(int(corners.size()));
+  }
+  return Indexed_mesh(begins, corners, int(shape.points.size()));
+}
+
+// nx times ny squares in the xy-plane, split along alternating diagonals (or not at all)
+inline Shape plane_grid(int nx, int ny, double length = 1, bool quads = false)
+{
+  Shape s;
+  for(int j = 0; j <= ny; ++j)
+    for(int i = 0; i <= nx; ++i)
+      s.add(length * i / nx, length * j / nx, 0);
+  const auto at = [&](int i, int j) { return j * (nx + 1) + i; };
+  for(int j = 0; j < ny; ++j)
+    for(int i = 0; i < nx; ++i)
+      if(quads)
+        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      else
+        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  return s;
+}
+
+// a rhombus of equilateral triangles
+inline Shape equilateral_grid(int nx, int ny, double edge = 1)
+{
+  Shape s;
+  for(int j = 0; j <= ny; ++j)
+    for(int i = 0; i <= nx; ++i)
+      s.add(edge * (i + 0.5 * j), edge * 0.5 * std::sqrt(3.) * j, 0);
+  const auto at = [&](int i, int j) { return j * (nx + 1) + i; };
+  for(int j = 0; j < ny; ++j)
+    for(int i = 0; i < nx; ++i)
+      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), true);
+  return s;
+}
+
+// A strip of triangles around the z-axis: radius and height as functions of the row. `turn` is the
+// angle that it covers; all round, the last column is the first.
+inline Shape revolved(int columns,
+                      int rows,
+                      const std::function<double(double)>& radius,
+                      const std::function<double(double)>& height,
+                      double turn = 2 * pi)
+{
+  Shape s;
+  const bool closed = std::abs(turn - 2 * pi) < 1e-12;
+  const int n = closed ? columns : columns + 1;
+  for(int j = 0; j <= rows; ++j)
+    for(int i = 0; i < n; ++i)
+    {
+      const double r = radius(double(j) / rows), a = turn * i / columns;
+      s.add(r * std::cos(a), r * std::sin(a), height(double(j) / rows));
+    }
+  const auto at = [&](int i, int j) { return j * n + i % n; };
+  for(int j = 0; j < rows; ++j)
+    for(int i = 0; i < columns; ++i)
+      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  return s;
+}
+
+inline Shape cylinder(int columns, int rows, double radius, double height, double turn = 2 * pi)
+{
+  return revolved(
+    columns, rows, [=](double) { return radius; }, [=](double t) { return height * t; }, turn);
+}
+
+// part of a circular cone whose sides make `half_angle` with the axis
+inline Shape cone(int columns,
+                  int rows,
+                  double half_angle,
+                  double from = 0.2,
+                  double to = 1,
+                  double turn = 2 * pi)
+{
+  return revolved(
+    columns, rows, [=](double t) { return (to + t * (from - to)) * std::sin(half_angle); },
+    [=](double t) { return -(to + t * (from - to)) * std::cos(half_angle); }, turn);
+}
+
+// fans that close the two ends of an open cylinder of `columns` columns
+inline Shape closed_cylinder(int columns, int rows, double radius, double height)
+{
+  Shape s = cylinder(columns, rows, radius, height);
+  const int bottom = s.add(0, 0, 0), top = s.add(0, 0, height);
+  for(int i = 0; i < columns; ++i)
+  {
+    const int j = (i + 1) % columns;
+    s.triangle(j, i, bottom);
+    s.triangle(rows * columns + i, rows * columns + j, top);
+  }
+  return s;
+}
+
+// in the xy-plane, border outside and inside
+inline Shape annulus(int columns, int rows, double inner = 0.5)
+{
+  return revolved(
+    columns, rows, [=](double t) { return 1 - t * (1 - inner); }, [](double) { return 0.; });
+}
+
+// A flat spiral ramp: a ring of radii 1 and 2 that turns more often than once and rises slowly.
+inline Shape ramp(int columns, int rows, double turns, double rise = 0.05)
+{
+  Shape s = revolved(
+    columns, rows, [](double t) { return 2 - t; }, [](double) { return 0.; }, 2 * pi * turns);
+  for(int j = 0; j <= rows; ++j)
+    for(int i = 0; i <= columns; ++i)
+      s.points[j * (columns + 1) + i].z() = rise * turns * i / columns;
+  return s;
+}
+
+inline Shape torus(int columns, int rows, double big = 1, double small = 0.4)
+{
+  Shape s;
+  for(int j = 0; j < rows; ++j)
+    for(int i = 0; i < columns; ++i)
+    {
+      const double a = 2 * pi * i / columns, b = 2 * pi * j / rows;
+      const double r = big + small * std::cos(b);
+      s.add(r * std::cos(a), r * std::sin(a), small * std::sin(b));
+    }
+  const auto at = [&](int i, int j) { return (j % rows) * columns + i % columns; };
+  for(int j = 0; j < rows; ++j)
+    for(int i = 0; i < columns; ++i)
+      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  return s;
+}
+
+inline Shape tetrahedron()
+{
+  Shape s;
+  s.add(1, 1, 1);
+  s.add(-1, -1, 1);
+  s.add(-1, 1, -1);
+  s.add(1, -1, -1);
+  s.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return s;
+}
+
+// the unit sphere: an icosahedron split `levels` times
+inline Shape icosphere(int levels)
+{
+  Shape s;
+  const double g = 0.5 * (1 + std::sqrt(5.));
+  for(const double a : {-1., 1.})
+    for(const double b : {-g, g})
+    {
+      s.add(a, b, 0);
+      s.add(0, a, b);
+      s.add(b, 0, a);
+    }
+  // faces: triples at distance 2 of one another, oriented outwards
+  for(int i = 0; i < 12; ++i)
+    for(int j = i + 1; j < 12; ++j)
+      for(int k = j + 1; k < 12; ++k)
+      {
+        const auto near = [&](int a, int b) {
+          return std::abs((s.points[a] - s.points[b]).norm() - 2) < 1e-9;
+        };
+        if(!near(i, j) || !near(j, k) || !near(i, k))
+          continue;
+        const bool out = s.points[i].cross(s.points[j]).dot(s.points[k]) > 0;
+        s.triangle(i, out ? j : k, out ? k : j);
+      }
+  for(Vector_3& p : s.points)
+    p.normalize();
+  for(int l = 0; l < levels; ++l)
+  {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto inserted = middles.insert({{(std::min)(a, b), (std::max)(a, b)}, 0});
+      if(inserted.second)
+      {
+        const Vector_3 p = (s.points[a] + s.points[b]).normalized();
+        inserted.first->second = s.add(p.x(), p.y(), p.z());
+      }
+      return inserted.first->second;
+    };
+    const std::vector<std::vector<int>> faces = s.faces;
+    s.faces.clear();
+    for(const std::vector<int>& f : faces)
+    {
+      const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+      s.triangle(f[0], a, c);
+      s.triangle(f[1], b, a);
+      s.triangle(f[2], c, b);
+      s.triangle(a, b, c);
+    }
+  }
+  return s;
+}
+
+// a cube of n times n squares a side
+inline Shape cube(int n)
+{
+  Shape s;
+  std::map<std::array<int, 3>, int> index;
+  const auto vertex = [&](const std::array<int, 3>& p) {
+    const auto inserted = index.insert({p, 0});
+    if(inserted.second)
+      inserted.first->second = s.add(double(p[0]) / n, double(p[1]) / n, double(p[2]) / n);
+    return inserted.first->second;
+  };
+  for(int axis = 0; axis < 3; ++axis)
+    for(const bool high : {false, true})
+      for(int i = 0; i < n; ++i)
+        for(int j = 0; j < n; ++j)
+        {
+          const auto at = [&](int di, int dj) {
+            std::array<int, 3> p;
+            p[axis] = high ? n : 0;
+            p[(axis + 1) % 3] = i + di;
+            p[(axis + 2) % 3] = j + dj;
+            return vertex(p);
+          };
+          if(high)
+            s.quad(at(0, 0), at(1, 0), at(1, 1), at(0, 1), (i + j) % 2 == 1);
+          else
+            s.quad(at(0, 0), at(0, 1), at(1, 1), at(1, 0), (i + j) % 2 == 1);
+        }
+  return s;
+}
+
+// Two parallel sheets of n times n squares, `gap` apart and closed at the rim; `wave` is the height
+// of a wave that both follow. The first half of the vertices is the upper sheet.
+inline Shape double_sheet(int n, double gap, double wave = 0)
+{
+  Shape s;
+  const auto height = [&](double x) { return wave * std::sin(2 * pi * 2 * x); };
+  for(int side = 0; side < 2; ++side)
+    for(int j = 0; j <= n; ++j)
+      for(int i = 0; i <= n; ++i)
+      {
+        const double x = double(i) / n;
+        s.add(x, double(j) / n, height(x) - side * gap);
+      }
+  const int m = (n + 1) * (n + 1);
+  const auto at = [&](int i, int j) { return j * (n + 1) + i; };
+  for(int j = 0; j < n; ++j)
+    for(int i = 0; i < n; ++i)
+      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  for(int j = 0; j < n; ++j)
+    for(int i = 0; i < n; ++i)
+      s.quad(m + at(i, j), m + at(i, j + 1), m + at(i + 1, j + 1), m + at(i + 1, j),
+             (i + j) % 2 == 1);
+  for(int i = 0; i < n; ++i)
+  {
+    const auto side = [&](int a, int b) { s.quad(b, a, m + a, m + b); };
+    side(at(i, 0), at(i + 1, 0));
+    side(at(n, i), at(n, i + 1));
+    side(at(i + 1, n), at(i, n));
+    side(at(0, i + 1), at(0, i));
+  }
+  return s;
+}
+
+// both meshes as one, the second shifted
+inline Shape joined(const Shape& a, const Shape& b, const Vector_3& shift)
+{
+  Shape s = a;
+  for(const Vector_3& p : b.points)
+    s.points.push_back(p + shift);
+  for(std::vector<int> f : b.faces)
+  {
+    for(int& v : f)
+      v += int(a.points.size());
+    s.faces.push_back(f);
+  }
+  return s;
+}
+
+// without the given faces; isolated vertices stay
+inline Shape without_faces(const Shape& shape, const std::function<bool(int)>& drop)
+{
+  Shape s;
+  s.points = shape.points;
+  for(int f = 0; f < int(shape.faces.size()); ++f)
+    if(!drop(f))
+      s.faces.push_back(shape.faces[f]);
+  return s;
+}
+
+// without the vertices that no face uses
+inline Shape compacted(const Shape& shape)
+{
+  Shape s;
+  std::vector<int> index(shape.points.size(), -1);
+  for(std::vector<int> f : shape.faces)
+  {
+    for(int& v : f)
+    {
+      if(index[v] < 0)
+      {
+        index[v] = int(s.points.size());
+        s.points.push_back(shape.points[v]);
+      }
+      v = index[v];
+    }
+    s.faces.push_back(f);
+  }
+  return s;
+}
+
+// Vertices away from the border moved at random by up to `amount` of their shortest edge, then back
+// onto the surface by `project`.
+inline Shape scrambled(const Shape& shape,
+                       double amount,
+                       std::uint64_t seed,
+                       const std::function<Vector_3(const Vector_3&)>& project)
+{
+  Shape s = shape;
+  const Indexed_mesh mesh = indexed(shape);
+  std::vector<double> shortest(shape.points.size(), 1e300);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+  {
+    const int a = mesh.source(c), b = mesh.target(c);
+    const double length = (shape.points[a] - shape.points[b]).norm();
+    shortest[a] = (std::min)(shortest[a], length);
+    shortest[b] = (std::min)(shortest[b], length);
+  }
+  Random random(seed);
+  for(std::size_t v = 0; v < s.points.size(); ++v)
+  {
+    const Vector_3 move = random.in_cube(amount);
+    if(!mesh.is_border_vertex[v] && mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
+      s.points[v] = project(shape.points[v] + shortest[v] * move);
+  }
+  return s;
+}
+
+inline Vector_3 onto_plane(const Vector_3& p) { return Vector_3(p.x(), p.y(), 0); }
+inline Vector_3 onto_sphere(const Vector_3& p) { return p.normalized(); }
+inline std::function<Vector_3(const Vector_3&)> onto_cylinder(double radius)
+{
+  return [=](const Vector_3& p) {
+    const double r = std::hypot(p.x(), p.y());
+    return Vector_3(p.x() * radius / r, p.y() * radius / r, p.z());
+  };
+}
+inline std::function<Vector_3(const Vector_3&)> onto_torus(double big, double small)
+{
+  return [=](const Vector_3& p) {
+    const Vector_3 ring = Vector_3(p.x(), p.y(), 0).normalized() * big;
+    return Vector_3(ring + (p - ring).normalized() * small);
+  };
+}
+
+// ------------------------------------------------------------------- measures of triangles
+
+inline double smallest_angle(const Vector_3& a, const Vector_3& b, const Vector_3& c)
+{
+  const Vector_3* p[3] = {&a, &b, &c};
+  double smallest = 180;
+  for(int i = 0; i < 3; ++i)
+  {
+    const Vector_3 u = *p[(i + 1) % 3] - *p[i], v = *p[(i + 2) % 3] - *p[i];
+    smallest = (std::min)(smallest, std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / pi);
+  }
+  return smallest;
+}
+
+inline double smallest_angle(const Shape& s)
+{
+  double smallest = 180;
+  for(const std::vector<int>& f : s.faces)
+    smallest = (std::min)(smallest, smallest_angle(s.points[f[0]], s.points[f[1]], s.points[f[2]]));
+  return smallest;
+}
+
+inline double mean_smallest_angle(const Shape& s)
+{
+  double sum = 0;
+  for(const std::vector<int>& f : s.faces)
+    sum += smallest_angle(s.points[f[0]], s.points[f[1]], s.points[f[2]]);
+  return sum / double(s.faces.size());
+}
+
+inline double area(const Shape& s)
+{
+  double sum = 0;
+  for(const std::vector<int>& f : s.faces)
+    for(std::size_t i = 1; i + 1 < f.size(); ++i)
+      sum += 0.5 * (s.points[f[i]] - s.points[f[0]]).cross(s.points[f[i + 1]] - s.points[f[0]]).norm();
+  return sum;
+}
+
+} // namespace rco_test
+
+#endif // RCO_TEST_UTIL_H
