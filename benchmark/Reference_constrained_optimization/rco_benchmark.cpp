@@ -67,7 +67,7 @@ mesh and each combination of settings.
 Settings; each takes a number or a list such as 0.1,0.25,0.6:
   --exponent S           factor in the exponent of the energy (default 1)
   --developability E     threshold for a face to join a patch
-  --patch-size N         largest number of faces of a patch
+  --patch-size N         largest number of faces of a patch; 0: by the size of the mesh
   --iterations N         largest number of outer iterations
   --tolerance T          relative decrease of the energy per iteration that ends the run
   --seed N               random seed

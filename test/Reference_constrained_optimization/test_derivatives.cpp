@@ -81,7 +81,8 @@ void test_derivatives_at(const Density& density, const Matrix_2& J, double h)
   const double scale = J.norm();
 
   const auto slope = differences(J, h, [&](const Matrix_2& K) { return density.value(K); });
-  const auto bend = differences(J, h, [&](const Matrix_2& K) { return as_vector(density.gradient(K)); });
+  const auto bend =
+    differences(J, h, [&](const Matrix_2& K) { return as_vector(density.gradient(K)); });
   // rounding of the differences: values are known to about 1e-15 of themselves
   const double value_noise = 1e-14 * std::abs(density.value(J)) / h;
   const double gradient_noise = 1e-14 * gradient.norm() / h;
@@ -164,8 +165,8 @@ void test_exponential_mips(double k)
   const RCO::Exponential_MIPS_density density(k);
   RCO_CHECK_EQUAL(density.exponent_factor(), k);
   Random random(2);
-  for(const double t : {1., 1 - 1e-7, 0.9, 0.5, 0.3, 0.2, 0.1, 0.04, 0.02, 0.01, 1e-4, 0., -0.01, -0.1,
-                        -0.5, -0.9, -1.})
+  for(const double t : {1., 1 - 1e-7, 0.9, 0.5, 0.3, 0.2, 0.1, 0.04, 0.02, 0.01, 1e-4, 0., -0.01,
+                        -0.1, -0.5, -0.9, -1.})
     for(int i = 0; i < 4; ++i)
     {
       const double size = random(0.2, 3);
@@ -210,7 +211,8 @@ void test_symmetric_dirichlet()
       // a mirror image is a ridge of this density, and the threshold a jump of third derivatives
       const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(s * size));
       const double gap = (std::min)(std::abs(size - 0.02), std::abs(s * size - 0.02));
-      const double h = 1e-3 * (std::min)((std::max)(gap, 1e-4), (std::max)(std::abs(s * size), 0.02));
+      const double h =
+        1e-3 * (std::min)((std::max)(gap, 1e-4), (std::max)(std::abs(s * size), 0.02));
       test_derivatives_at(density, with_singular_values(size, s * size, random), h);
     }
   for(int i = 0; i < 20; ++i)
@@ -432,6 +434,7 @@ void test_known_optimum(const Density& density, double best, const Matrix_2& map
 
   const std::vector<Vector_2> before = u;
   internal::Planar_optimizer optimizer;
+  optimizer.analyze(problem);
   double energy = energy_of(problem, density, u);
   for(int step = 0; step < 60; ++step)
   {
@@ -518,6 +521,7 @@ void test_newton_step(const Density& density)
 
     std::vector<Vector_2> moved(u);
     internal::Planar_optimizer optimizer;
+    optimizer.analyze(problem);
     const auto outcome = optimizer.minimize(problem, density, moved, 1, 1e-14);
     RCO_CHECK_EQUAL(outcome.steps, 1);
     Eigen::VectorXd step(2 * n);
@@ -543,6 +547,7 @@ void test_untangling(const Density& density)
   RCO_CHECK_LESS(0, number_inverted(problem, u));
   const double before = energy_of(problem, density, u);
   internal::Planar_optimizer optimizer;
+  optimizer.analyze(problem);
   for(int step = 0; step < 100; ++step)
     optimizer.minimize(problem, density, u, 1, 1e-14);
   RCO_CHECK_LESS(energy_of(problem, density, u), before);
@@ -566,6 +571,7 @@ void test_planar_optimizer(const Density& density, double best, const std::strin
   std::vector<Vector_2> u = planar_points(equilateral_grid(2, 2));
   const std::vector<Vector_2> before = u;
   internal::Planar_optimizer optimizer;
+  optimizer.analyze(problem);
   RCO_CHECK_EQUAL(optimizer.minimize(problem, density, u, 10, 1e-9).steps, 0);
   RCO_CHECK(u == before);
 }
@@ -619,7 +625,8 @@ int main()
   test_time_of_collapse();
   test_newton_system();
   test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
-  test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.), "exponential MIPS, k = 0.5");
+  test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.),
+                        "exponential MIPS, k = 0.5");
   test_planar_optimizer(RCO::Symmetric_Dirichlet_density(), 4, "symmetric Dirichlet");
   test_surface_metric();
   return report();

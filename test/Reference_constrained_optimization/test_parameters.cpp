@@ -44,10 +44,12 @@ void test_chains()
     RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::number_of_iterations), 5);
   }
   // every one of ours may come first ...
-  RCO_CHECK_EQUAL(parameter(params::developability_threshold(0.3), tags::developability_threshold), 0.3);
+  RCO_CHECK_EQUAL(parameter(params::developability_threshold(0.3), tags::developability_threshold),
+                  0.3);
   RCO_CHECK_EQUAL(parameter(params::energy_tolerance(0.01), tags::energy_tolerance), 0.01);
   RCO_CHECK_EQUAL(parameter(params::drift_bound(2.), tags::drift_bound), 2.);
-  RCO_CHECK_EQUAL(parameter(params::use_on_surface_steps(false), tags::use_on_surface_steps), false);
+  RCO_CHECK_EQUAL(parameter(params::use_on_surface_steps(false), tags::use_on_surface_steps),
+                  false);
   RCO_CHECK_EQUAL(parameter(params::use_finishing_stage(false), tags::use_finishing_stage), false);
   RCO_CHECK_EQUAL(parameter(params::vertex_location_map(7), tags::vertex_location_map), 7);
   RCO_CHECK_EQUAL(parameter(params::maximum_patch_size(50), tags::maximum_patch_size), 50);
@@ -94,13 +96,13 @@ void test_chains()
   RCO_CHECK_EQUAL(standard.selection.maximum_patch_size, untouched.selection.maximum_patch_size);
   RCO_CHECK_EQUAL(standard.energy_tolerance, untouched.energy_tolerance);
   RCO_CHECK_EQUAL(standard.maximum_running_time, std::numeric_limits<double>::infinity());
-  const internal::Loop_parameters read = internal::read_loop_parameters(
-    internal::cgal_parameters(params::maximum_patch_size(50)
-                                .energy_tolerance(0.01)
-                                .developability_threshold(0.3)
-                                .maximum_running_time(12.5)
-                                .number_of_iterations(4)
-                                .random_seed(8)));
+  const internal::Loop_parameters read =
+    internal::read_loop_parameters(internal::cgal_parameters(params::maximum_patch_size(50)
+                                                               .energy_tolerance(0.01)
+                                                               .developability_threshold(0.3)
+                                                               .maximum_running_time(12.5)
+                                                               .number_of_iterations(4)
+                                                               .random_seed(8)));
   RCO_CHECK_EQUAL(read.number_of_iterations, std::size_t(4));
   RCO_CHECK_EQUAL(read.random_seed, 8u);
   RCO_CHECK_EQUAL(read.selection.developability_threshold, 0.3);
@@ -193,8 +195,8 @@ void test_calls()
   RCO_CHECK_LESS_EQUAL(small.number_of_iterations, std::size_t(2));
   RCO_CHECK_LESS(10., double(small.number_of_patches));
   mesh = start;
-  const RCO::Result loose = CGAL::reference_constrained_optimize(
-    mesh, reference, energy, params::energy_tolerance(0.9));
+  const RCO::Result loose =
+    CGAL::reference_constrained_optimize(mesh, reference, energy, params::energy_tolerance(0.9));
   RCO_CHECK_LESS_EQUAL(loose.number_of_iterations, plain.number_of_iterations);
 
   // names whose stages are not there yet do no harm
@@ -210,7 +212,11 @@ void test_calls()
 
 // the call throws Invalid_input with `text` in its message, and leaves every bit of the mesh alone
 template <typename M, typename R, typename Energy, typename NamedParameters>
-void refuses(M& mesh, const R& reference, const Energy& energy, const NamedParameters& np, const std::string& text)
+void refuses(M& mesh,
+             const R& reference,
+             const Energy& energy,
+             const NamedParameters& np,
+             const std::string& text)
 {
   const Shape before = make_shape(mesh);
   RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(mesh, reference, energy, np),
@@ -218,7 +224,8 @@ void refuses(M& mesh, const R& reference, const Energy& energy, const NamedParam
   const Shape after = make_shape(mesh);
   RCO_CHECK_EQUAL(before.points.size(), after.points.size());
   for(std::size_t v = 0; v < before.points.size(); ++v)
-    RCO_CHECK(std::memcmp(before.points[v].data(), after.points[v].data(), 3 * sizeof(double)) == 0);
+    RCO_CHECK(std::memcmp(before.points[v].data(), after.points[v].data(), 3 * sizeof(double)) ==
+              0);
   RCO_CHECK(before.faces == after.faces);
 }
 
@@ -241,9 +248,9 @@ void test_bad_meshes()
     mesh = make_mesh<M>(rough);
     refuses(mesh, M(), energy, np, "reference: the mesh has no face");
   }
-  for(const double value : {std::numeric_limits<double>::quiet_NaN(),
-                            std::numeric_limits<double>::infinity(),
-                            -std::numeric_limits<double>::infinity()})
+  for(const double value :
+      {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+       -std::numeric_limits<double>::infinity()})
     for(const int coordinate : {0, 1, 2})
     {
       const Scope scope("not finite");
@@ -329,7 +336,9 @@ struct Bad_energy
   int what;
   Density m_density;
   const Density& density() const { return m_density; }
-  void append_elements(const RCO::Energy_context&, std::size_t f, std::vector<RCO::Energy_element>& elements) const
+  void append_elements(const RCO::Energy_context&,
+                       std::size_t f,
+                       std::vector<RCO::Energy_element>& elements) const
   {
     RCO::Energy_element e;
     if(f == 5 && what == 1)
@@ -379,7 +388,8 @@ void test_bad_data()
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for(const double value : {-0.1, 0., nan})
     {
-      refuses(mesh, reference, energy, params::developability_threshold(value), "developability_threshold");
+      refuses(mesh, reference, energy, params::developability_threshold(value),
+              "developability_threshold");
       refuses(mesh, reference, energy, params::maximum_running_time(value), "maximum_running_time");
     }
     for(const double value : {-1e-9, nan})

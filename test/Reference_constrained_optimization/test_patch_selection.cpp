@@ -153,7 +153,7 @@ void test_cone_proxy()
 bool is_disk(const Indexed_mesh& mesh, const std::vector<int>& faces)
 {
   std::set<int> all_vertices;
-  std::map<std::pair<int, int>, int> uses; // of undirected edges
+  std::map<std::pair<int, int>, int> uses;               // of undirected edges
   std::map<int, std::vector<std::pair<int, int>>> links; // per vertex: previous and next, per face
   for(const int f : faces)
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -245,7 +245,8 @@ void test_disk_guard(const Shape& shape, const std::string& name)
       {
         bool is_beside = false;
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-          is_beside = is_beside || (mesh.opposite[c] >= 0 && in_patch[mesh.corner_face[mesh.opposite[c]]]);
+          is_beside =
+            is_beside || (mesh.opposite[c] >= 0 && in_patch[mesh.corner_face[mesh.opposite[c]]]);
         if(in_patch[f] || !is_beside)
           continue;
         std::vector<int> larger(patch);
@@ -361,7 +362,8 @@ std::size_t test_growing(const Shape& shape, const std::string& name)
         const std::set<int> again_set(again.begin(), again.end());
         const std::set<int> all(patch.begin(), patch.end());
         RCO_CHECK_EQUAL(again_set.size(), again.size());
-        RCO_CHECK(std::includes(again_set.begin(), again_set.end(), expected.begin(), expected.end()));
+        RCO_CHECK(
+          std::includes(again_set.begin(), again_set.end(), expected.begin(), expected.end()));
         RCO_CHECK(std::includes(all.begin(), all.end(), again_set.begin(), again_set.end()));
         largest = (std::max)(largest, patch.size());
       }
@@ -432,6 +434,7 @@ void test_threshold()
 {
   const Scope scope("developability threshold");
   internal::Selection_parameters parameters;
+  parameters.maximum_patch_size = 1000;
   parameters.exempt_size = 0;
   parameters.developability_threshold = 0.01;
   // on a cube a patch that starts on flat ground stays on its side
@@ -447,8 +450,9 @@ void test_threshold()
     {
       const int v = box_mesh.corner_vertex[c];
       for(int k = box_mesh.vertex_begin[v]; k < box_mesh.vertex_begin[v + 1]; ++k)
-        is_flat = is_flat && box_geometry.normals[box_mesh.corner_face[box_mesh.vertex_corners[k]]].dot(
-                         box_geometry.normals[seed]) > 0.99;
+        is_flat =
+          is_flat && box_geometry.normals[box_mesh.corner_face[box_mesh.vertex_corners[k]]].dot(
+                       box_geometry.normals[seed]) > 0.99;
     }
     if(!is_flat)
       continue;

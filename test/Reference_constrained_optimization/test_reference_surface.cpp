@@ -70,7 +70,8 @@ void test_closest_barycentric()
     if(i % 7 == 0) // above the inside
     {
       const Vector_3 b = random.barycentric();
-      p = b(0) * t[0] + b(1) * t[1] + b(2) * t[2] + 0.3 * random() * (t[1] - t[0]).cross(t[2] - t[0]);
+      p =
+        b(0) * t[0] + b(1) * t[1] + b(2) * t[2] + 0.3 * random() * (t[1] - t[0]).cross(t[2] - t[0]);
     }
     const Vector_3 b = internal::closest_barycentric(p, t[0], t[1], t[2]);
     RCO_CHECK(b.allFinite() && b.minCoeff() >= 0);
@@ -105,7 +106,8 @@ double brute_force_distance(const internal::Reference_surface& surface, const Ve
   return best;
 }
 
-void check_surface_point(const internal::Reference_surface& surface, const internal::Surface_point& s)
+void check_surface_point(const internal::Reference_surface& surface,
+                         const internal::Surface_point& s)
 {
   RCO_CHECK(s.face >= 0 && s.face < surface.mesh().number_of_faces());
   RCO_CHECK(s.barycentric.minCoeff() >= 0);
@@ -126,7 +128,8 @@ void test_closest(const Shape& shape, const std::string& name)
     RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-12);
   }
   for(std::size_t v = 0; v < shape.points.size(); v += 7)
-    RCO_CHECK_LESS_EQUAL((surface.closest(shape.points[v]).position - shape.points[v]).norm(), 1e-15);
+    RCO_CHECK_LESS_EQUAL((surface.closest(shape.points[v]).position - shape.points[v]).norm(),
+                         1e-15);
 }
 
 // on a convex surface there is one local minimum for a point outside
@@ -143,7 +146,8 @@ void test_descend_on_convex_surfaces()
       // from somewhere near: the point of a face, pushed outwards and aside
       const int f = random.index(n);
       const internal::Surface_point from = surface.point(f, random.barycentric());
-      const Vector_3 normal = internal::face_vector_area(surface.mesh(), surface.points(), f).normalized();
+      const Vector_3 normal =
+        internal::face_vector_area(surface.mesh(), surface.points(), f).normalized();
       const Vector_3 p = from.position + random(0.2, 0.5) * normal + random.in_cube(0.2);
       const internal::Surface_point s = surface.descend(p, f);
       check_surface_point(surface, s);
@@ -164,7 +168,8 @@ void test_descend_on_convex_surfaces()
   for(int i = 0; i < 500; ++i)
   {
     const Vector_3 p = random(1.01, 2) * random.in_cube(1).normalized();
-    const internal::Surface_point s = surface.descend(p, random.index(surface.mesh().number_of_faces()));
+    const internal::Surface_point s =
+      surface.descend(p, random.index(surface.mesh().number_of_faces()));
     RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-10);
   }
 }
@@ -178,7 +183,10 @@ bool is_upper(const Shape& sheet, int f)
   return true;
 }
 
-bool is_at_rim(const Vector_3& p) { return p.head<2>().minCoeff() < 0.06 || p.head<2>().maxCoeff() > 0.94; }
+bool is_at_rim(const Vector_3& p)
+{
+  return p.head<2>().minCoeff() < 0.06 || p.head<2>().maxCoeff() > 0.94;
+}
 
 void test_descend_on_double_sheet()
 {
@@ -227,8 +235,9 @@ struct Placed_mesh
               const internal::Reference_surface& surface,
               const std::function<bool(int)>& face_is_allowed)
     : mesh(indexed(shape)),
-      elements(RCO::Minimum_angle_energy(),
-               RCO::Energy_context(mesh.face_begin, mesh.corner_vertex, shape.points.size(), 1, 1, 1)),
+      elements(
+        RCO::Minimum_angle_energy(),
+        RCO::Energy_context(mesh.face_begin, mesh.corner_vertex, shape.points.size(), 1, 1, 1)),
       state{mesh, surface, elements, {}, {}}
   {
     for(std::size_t v = 0; v < shape.points.size(); ++v)
@@ -260,55 +269,73 @@ internal::Patch whole_patch(const Placed_mesh& placed)
   return internal::Patch_builder(placed.mesh).build(faces, placed.state);
 }
 
-// M is a coarse sheet on the upper side of a wavy double sheet: its chords run beyond the lower
-// side, where every point of M's faces must still be mapped to the upper one.
-void test_map_to_reference_on_double_sheet()
+// M is a coarse sheet on the upper one of two wavy sheets: its chords run beyond the lower one,
+// where every point of M's faces must still be mapped to the upper one.
+void test_map_to_upper_sheet(const Shape& sheets,
+                             const std::function<bool(int)>& is_on_upper,
+                             int coarseness,
+                             int expected_wrong_by_tree)
 {
-  const Scope scope("map_to_reference on a double sheet");
-  for(const double gap : {1e-2, 1e-4, 1e-7})
+  const internal::Reference_surface surface = surface_of(sheets);
+  Shape coarse = plane_grid(coarseness, coarseness, 0.8);
+  for(Vector_3& p : coarse.points)
+    p += Vector_3(0.1, 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
+  const Placed_mesh placed(coarse, surface, is_on_upper);
+  const internal::Patch patch = whole_patch(placed);
+  Random random(5);
+  int mapped = 0, tried = 0, wrong_by_tree = 0;
+  for(int i = 0; i < 4000; ++i)
   {
-    const int n = 48;
-    const Shape sheet = double_sheet(n, gap, 0.05);
-    const internal::Reference_surface surface = surface_of(sheet);
-    Shape coarse = plane_grid(10, 10, 0.8);
-    for(Vector_3& p : coarse.points)
-      p += Vector_3(0.1, 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
-    const Placed_mesh placed(coarse, surface, [&](int f) { return is_upper(sheet, f); });
-    const internal::Patch patch = whole_patch(placed);
-    Random random(5);
-    int mapped = 0, tried = 0, wrong_by_tree = 0;
-    for(int i = 0; i < 4000; ++i)
-    {
-      internal::Planar_location location;
-      location.triangle = random.index(patch.polygons.number_of_faces());
-      location.barycentric = random.barycentric();
-      if(i % 5 == 0)
-        location.barycentric = Vector_3::Unit(i % 3);
-      if(i % 5 == 1)
-        location.barycentric = Vector_3(0.5, 0.5, 0);
-      Vector_3 point = Vector_3::Zero();
-      for(int k = 0; k < 3; ++k)
-        point += location.barycentric(k) *
-                 patch.placed[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
-      ++tried;
-      wrong_by_tree += !is_upper(sheet, surface.closest(point).face);
-      internal::Placed_vertex result;
-      if(!internal::map_to_reference(patch, location, surface, result))
-        continue;
-      ++mapped;
-      RCO_CHECK(is_upper(sheet, result.on_reference.face));
-      RCO_CHECK_LESS(0., result.normal.z());
-      RCO_CHECK(result.position == result.on_reference.position);
-      check_surface_point(surface, result.on_reference);
-      // it is near: not further than the chords are from the wave
-      RCO_CHECK_LESS((result.position - point).norm(), 0.02);
-      if(i % 5 == 0)
-        RCO_CHECK_LESS_EQUAL((result.position - point).norm(), 1e-12);
-    }
-    RCO_CHECK_LESS(0.99 * tried, double(mapped));
-    if(gap < 1e-3)
-      RCO_CHECK_LESS(500, wrong_by_tree);
+    internal::Planar_location location;
+    location.triangle = random.index(patch.polygons.number_of_faces());
+    location.barycentric = random.barycentric();
+    if(i % 5 == 0)
+      location.barycentric = Vector_3::Unit(i % 3);
+    if(i % 5 == 1)
+      location.barycentric = Vector_3(0.5, 0.5, 0);
+    Vector_3 point = Vector_3::Zero();
+    for(int k = 0; k < 3; ++k)
+      point += location.barycentric(k) *
+               patch.placed[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
+    ++tried;
+    wrong_by_tree += !is_on_upper(surface.closest(point).face);
+    internal::Placed_vertex result;
+    if(!internal::map_to_reference(patch, location, surface, result))
+      continue;
+    ++mapped;
+    RCO_CHECK(is_on_upper(result.on_reference.face));
+    RCO_CHECK_LESS(0., result.normal.z());
+    RCO_CHECK(result.position == result.on_reference.position);
+    check_surface_point(surface, result.on_reference);
+    // it is near: not further than the chords are from the wave
+    RCO_CHECK_LESS((result.position - point).norm(), 0.06);
+    if(i % 5 == 0)
+      RCO_CHECK_LESS_EQUAL((result.position - point).norm(), 1e-12);
   }
+  RCO_CHECK_LESS(0.99 * tried, double(mapped));
+  RCO_CHECK_LESS(expected_wrong_by_tree, wrong_by_tree);
+}
+
+void test_map_to_reference_on_sheets()
+{
+  for(const double gap : {1e-2, 1e-4, 1e-7})
+    for(const int coarseness : {10, 5})
+    {
+      const Scope scope("map_to_reference on a double sheet of gap " + std::to_string(gap));
+      const Shape sheet = double_sheet(48, gap, 0.05);
+      test_map_to_upper_sheet(
+        sheet, [&](int f) { return is_upper(sheet, f); }, coarseness,
+        coarseness == 5 || gap < 1e-3 ? 500 : -1);
+    }
+  // two shelves that look the same way: only the way along R tells them apart
+  const Scope scope("map_to_reference on two shelves");
+  Shape shelf = plane_grid(48, 48);
+  for(Vector_3& p : shelf.points)
+    p.z() = 0.05 * std::sin(4 * pi * p.x());
+  const int faces = int(shelf.faces.size());
+  const Shape shelves = joined(shelf, shelf, Vector_3(0, 0, -0.015));
+  test_map_to_upper_sheet(
+    shelves, [=](int f) { return f < faces; }, 5, 500);
 }
 
 // A flat M on a flat R is mapped to itself. Next to faces of R that have no area it may be off by
@@ -373,7 +400,8 @@ void test_normals()
   // area-weighted at a corner of a cube: n * n times as many triangles do not matter
   const internal::Reference_surface plane = surface_of(plane_grid(3, 3));
   for(int f = 0; f < plane.mesh().number_of_faces(); ++f)
-    RCO_CHECK_LESS_EQUAL((plane.normal(plane.point(f, Vector_3(0.1, 0.2, 0.7))) - Vector_3::UnitZ()).norm(), 1e-12);
+    RCO_CHECK_LESS_EQUAL(
+      (plane.normal(plane.point(f, Vector_3(0.1, 0.2, 0.7))) - Vector_3::UnitZ()).norm(), 1e-12);
   // by the definition, at one vertex of an irregular mesh
   const Shape rough = scrambled(icosphere(1), 0.3, 8, onto_sphere);
   const internal::Reference_surface surface = surface_of(rough);
@@ -384,11 +412,13 @@ void test_normals()
       if(rough.faces[f][i] == 7)
       {
         const auto& t = rough.faces[f];
-        sum += (rough.points[t[1]] - rough.points[t[0]]).cross(rough.points[t[2]] - rough.points[t[0]]);
+        sum +=
+          (rough.points[t[1]] - rough.points[t[0]]).cross(rough.points[t[2]] - rough.points[t[0]]);
         face = f;
         corner = i;
       }
-  RCO_CHECK_LESS_EQUAL((surface.normal(surface.point(face, Vector_3::Unit(corner))) - sum.normalized()).norm(), 1e-12);
+  RCO_CHECK_LESS_EQUAL(
+    (surface.normal(surface.point(face, Vector_3::Unit(corner))) - sum.normalized()).norm(), 1e-12);
 }
 
 void test_is_reachable()
@@ -400,19 +430,24 @@ void test_is_reachable()
   Random random(9);
   for(int i = 0; i < 300; ++i)
   {
-    const internal::Surface_point from = surface.point(random.index(mesh.number_of_faces()), random.barycentric());
-    const internal::Surface_point to = surface.point(random.index(mesh.number_of_faces()), random.barycentric());
+    const internal::Surface_point from =
+      surface.point(random.index(mesh.number_of_faces()), random.barycentric());
+    const internal::Surface_point to =
+      surface.point(random.index(mesh.number_of_faces()), random.barycentric());
     // shortest path over vertices, by relaxation
     std::vector<double> length(shape.points.size(), std::numeric_limits<double>::infinity());
     for(int k = 0; k < 3; ++k)
-      length[mesh.corner_vertex[3 * from.face + k]] = (surface.corner_point(from.face, k) - from.position).norm();
+      length[mesh.corner_vertex[3 * from.face + k]] =
+        (surface.corner_point(from.face, k) - from.position).norm();
     for(bool changes = true; changes;)
     {
       changes = false;
       for(int c = 0; c < mesh.number_of_corners(); ++c)
-        for(const auto& e : {std::make_pair(mesh.source(c), mesh.target(c)), std::make_pair(mesh.target(c), mesh.source(c))})
+        for(const auto& e : {std::make_pair(mesh.source(c), mesh.target(c)),
+                             std::make_pair(mesh.target(c), mesh.source(c))})
         {
-          const double l = length[e.first] + (shape.points[e.first] - shape.points[e.second]).norm();
+          const double l =
+            length[e.first] + (shape.points[e.first] - shape.points[e.second]).norm();
           if(l < length[e.second] - 1e-15)
           {
             length[e.second] = l;
@@ -432,7 +467,8 @@ void test_is_reachable()
   // two sides of a thin sheet are near in space, and far apart on the surface
   const Shape sheet = double_sheet(20, 1e-5);
   const internal::Reference_surface thin = surface_of(sheet);
-  const internal::Surface_point up = thin.closest(Vector_3(0.51, 0.52, 0.1)), down = thin.closest(Vector_3(0.51, 0.52, -0.1));
+  const internal::Surface_point up = thin.closest(Vector_3(0.51, 0.52, 0.1)),
+                                down = thin.closest(Vector_3(0.51, 0.52, -0.1));
   RCO_CHECK_LESS((up.position - down.position).norm(), 1e-4);
   RCO_CHECK(!thin.is_reachable(up, down, 0.5));
   RCO_CHECK(thin.is_reachable(up, down, 3));
@@ -449,7 +485,8 @@ void test_bad_references()
   RCO_CHECK_THROWS(surface_of(flat), RCO::Invalid_input, "zero area");
   // some faces without area do no harm
   Shape shape = icosphere(2);
-  shape.points[20] = shape.points[indexed(shape).target(indexed(shape).vertex_corners[indexed(shape).vertex_begin[20]])];
+  shape.points[20] = shape.points[indexed(shape).target(
+    indexed(shape).vertex_corners[indexed(shape).vertex_begin[20]])];
   test_closest(shape, "a sphere with faces of no area");
   const internal::Reference_surface surface = surface_of(shape);
   for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
@@ -477,7 +514,7 @@ int main()
   test_closest(plane_grid(6, 5, 1, true), "quads");
   test_descend_on_convex_surfaces();
   test_descend_on_double_sheet();
-  test_map_to_reference_on_double_sheet();
+  test_map_to_reference_on_sheets();
   test_map_to_reference_on_plane();
   test_normals();
   test_is_reachable();

@@ -92,49 +92,49 @@ inline int report()
   return counts().failures == 0 && counts().checks > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-#define RCO_CHECK(condition) \
+#define RCO_CHECK(condition)                                                                       \
   ::rco_test::check(static_cast<bool>(condition), #condition, std::string(), __FILE__, __LINE__)
 
-#define RCO_CHECK_BINARY(a, b, op)                                                              \
-  [&](const auto& rco_a, const auto& rco_b) {                                                   \
-    const bool rco_holds = rco_a op rco_b;                                                      \
-    return ::rco_test::check(rco_holds, #a " " #op " " #b,                                      \
-                             rco_holds ? std::string() : ::rco_test::values(rco_a, rco_b),      \
-                             __FILE__, __LINE__);                                               \
+#define RCO_CHECK_BINARY(a, b, op)                                                                 \
+  [&](const auto& rco_a, const auto& rco_b) {                                                      \
+    const bool rco_holds = rco_a op rco_b;                                                         \
+    return ::rco_test::check(rco_holds, #a " " #op " " #b,                                         \
+                             rco_holds ? std::string() : ::rco_test::values(rco_a, rco_b),         \
+                             __FILE__, __LINE__);                                                  \
   }((a), (b))
 #define RCO_CHECK_EQUAL(a, b) RCO_CHECK_BINARY(a, b, ==)
 #define RCO_CHECK_LESS(a, b) RCO_CHECK_BINARY(a, b, <)
 #define RCO_CHECK_LESS_EQUAL(a, b) RCO_CHECK_BINARY(a, b, <=)
 
 // false for NaN, too
-#define RCO_CHECK_NEAR(a, b, tolerance)                                                         \
-  [&](double rco_a, double rco_b) {                                                             \
-    return ::rco_test::check(std::abs(rco_a - rco_b) <= (tolerance), #a " near " #b,            \
-                             ::rco_test::values(rco_a, rco_b), __FILE__, __LINE__);             \
+#define RCO_CHECK_NEAR(a, b, tolerance)                                                            \
+  [&](double rco_a, double rco_b) {                                                                \
+    return ::rco_test::check(std::abs(rco_a - rco_b) <= (tolerance), #a " near " #b,               \
+                             ::rco_test::values(rco_a, rco_b), __FILE__, __LINE__);                \
   }((a), (b))
 
 // `statement` throws `Exception`, and the message contains `text`
-#define RCO_CHECK_THROWS(statement, Exception, text)                                            \
-  do                                                                                            \
-  {                                                                                             \
-    std::string rco_message = "nothing was thrown";                                             \
-    bool rco_thrown = false;                                                                    \
-    try                                                                                         \
-    {                                                                                           \
-      statement;                                                                                \
-    }                                                                                           \
-    catch(const Exception& rco_e)                                                               \
-    {                                                                                           \
-      rco_thrown = true;                                                                        \
-      rco_message = rco_e.what();                                                               \
-    }                                                                                           \
-    catch(const std::exception& rco_e)                                                          \
-    {                                                                                           \
-      rco_message = std::string("another type was thrown: ") + rco_e.what();                    \
-    }                                                                                           \
-    ::rco_test::check(rco_thrown && rco_message.find(text) != std::string::npos,                \
-                      #statement " throws " #Exception " about " #text, rco_message, __FILE__,  \
-                      __LINE__);                                                                \
+#define RCO_CHECK_THROWS(statement, Exception, text)                                               \
+  do                                                                                               \
+  {                                                                                                \
+    std::string rco_message = "nothing was thrown";                                                \
+    bool rco_thrown = false;                                                                       \
+    try                                                                                            \
+    {                                                                                              \
+      statement;                                                                                   \
+    }                                                                                              \
+    catch(const Exception& rco_e)                                                                  \
+    {                                                                                              \
+      rco_thrown = true;                                                                           \
+      rco_message = rco_e.what();                                                                  \
+    }                                                                                              \
+    catch(const std::exception& rco_e)                                                             \
+    {                                                                                              \
+      rco_message = std::string("another type was thrown: ") + rco_e.what();                       \
+    }                                                                                              \
+    ::rco_test::check(rco_thrown&& rco_message.find(text) != std::string::npos,                    \
+                      #statement " throws " #Exception " about " #text, rco_message, __FILE__,     \
+                      __LINE__);                                                                   \
   } while(false)
 
 // -------------------------------------------------------------------------- random numbers
@@ -276,12 +276,8 @@ inline Shape cylinder(int columns, int rows, double radius, double height, doubl
 }
 
 // part of a circular cone whose sides make `half_angle` with the axis
-inline Shape cone(int columns,
-                  int rows,
-                  double half_angle,
-                  double from = 0.2,
-                  double to = 1,
-                  double turn = 2 * pi)
+inline Shape cone(
+  int columns, int rows, double half_angle, double from = 0.2, double to = 1, double turn = 2 * pi)
 {
   return revolved(
     columns, rows, [=](double t) { return (to + t * (from - to)) * std::sin(half_angle); },
@@ -591,7 +587,8 @@ inline double area(const Shape& s)
   double sum = 0;
   for(const std::vector<int>& f : s.faces)
     for(std::size_t i = 1; i + 1 < f.size(); ++i)
-      sum += 0.5 * (s.points[f[i]] - s.points[f[0]]).cross(s.points[f[i + 1]] - s.points[f[0]]).norm();
+      sum +=
+        0.5 * (s.points[f[i]] - s.points[f[0]]).cross(s.points[f[i + 1]] - s.points[f[0]]).norm();
   return sum;
 }
 

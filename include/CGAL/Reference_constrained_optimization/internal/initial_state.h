@@ -14,6 +14,7 @@
 #include <boost/graph/graph_traits.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>

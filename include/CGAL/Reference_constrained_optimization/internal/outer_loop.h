@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -34,6 +35,7 @@ struct Loop_parameters
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2;
+  int maximum_revisits = 10; // of the worst elements, at the end
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
@@ -82,6 +84,7 @@ public:
       m_start(start),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
+      m_small_selection(state.mesh, small(parameters.selection)),
       m_for_each([&state, &parameters]() {
         return Workspace{Patch_builder(state.mesh),
                          Flattened_mover(state.reference, parameters.mover), Acceptance_test()};
@@ -93,10 +96,11 @@ public:
   {
     const Indexed_mesh& mesh = m_state.mesh;
     Global_measure before = measure(m_state, m_density, std::numeric_limits<double>::infinity());
-    m_worst_allowed = before.worst;
-    // stuck elements own the sum: convergence is judged on a sum to which each gives ten times the
-    // mean of the better half at most
-    m_cap = 10 * lower_half_mean();
+    // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
+    // the mean of the better half at most
+    const double typical = lower_half_mean();
+    m_cap = 10 * typical;
+    m_limits = {before.worst, 1.5 * typical};
     before = measure(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
@@ -108,31 +112,85 @@ public:
     activate([&](int v) { return m_state.is_free[v] != 0; }, 0);
 
     m_result.status = Status::iteration_limit;
+    if(iterate_to_convergence(before))
+      revisit_worst();
+  }
+
+private:
+  // false if cut short
+  bool iterate_to_convergence(Global_measure before)
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
     for(std::size_t i = 0; i < m_parameters.number_of_iterations; ++i)
     {
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
       ++m_result.number_of_iterations;
-      const bool complete = iterate();
+      const bool complete = visit(m_is_active, m_selection);
       const Global_measure after = measure(m_state, m_density, m_cap);
       m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
       if(!complete)
-        return;
+        return false;
+      m_limits.worst = (std::min)(m_limits.worst, after.worst);
       m_is_active.assign(mesh.number_of_faces(), 0);
       const bool moves = activate([&](int v) { return m_moved[v] != 0; }, 1);
       const bool unfolds = after.flips + after.fold_edges < before.flips + before.fold_edges;
-      const bool falls = before.capped_energy - after.capped_energy >
-                         m_parameters.energy_tolerance * before.capped_energy;
+      const double tolerance = m_parameters.energy_tolerance;
+      const bool falls =
+        before.energy - after.energy > tolerance * before.energy ||
+        before.capped_energy - after.capped_energy > tolerance * before.capped_energy;
       if(!moves || !(unfolds || falls))
       {
         m_result.status = Status::converged;
-        return;
+        return true;
       }
+      before = after;
+    }
+    return m_parameters.number_of_iterations > 0;
+  }
+
+  // The worst elements once more, by themselves, in small patches around them, as long as that
+  // helps: in a large patch their gain may be lost with a step that fails elsewhere.
+  void revisit_worst()
+  {
+    const std::size_t count = 20 + std::size_t(m_state.mesh.number_of_faces()) / 500;
+    double before = std::numeric_limits<double>::infinity();
+    for(int pass = 0; pass < m_parameters.maximum_revisits; ++pass)
+    {
+      std::vector<std::pair<double, int>> faces = face_densities();
+      const std::size_t n = (std::min)(count, faces.size());
+      std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
+                        std::greater<std::pair<double, int>>());
+      m_limits.worst = faces.front().first;
+      std::vector<char> is_wanted(faces.size(), 0);
+      double after = 0;
+      for(std::size_t i = 0; i < n; ++i)
+      {
+        is_wanted[faces[i].second] = 1;
+        after += std::log(faces[i].first);
+      }
+      const double least_gain = 0.002 * double(n);
+      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection))
+        return;
       before = after;
     }
   }
 
-private:
+  // the largest density of the elements of every face, with the face
+  std::vector<std::pair<double, int>> face_densities() const
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    std::vector<std::pair<double, int>> result;
+    for(int f = 0; f < m_state.mesh.number_of_faces(); ++f)
+    {
+      double largest = 0;
+      for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
+        largest = (std::max)(largest, element_energy(m_density, m_state.elements[e], vertex));
+      result.emplace_back(largest, f);
+    }
+    return result;
+  }
+
   // Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
   // as fast as their number.
   static Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
@@ -140,6 +198,12 @@ private:
     if(selection.maximum_patch_size == 0)
       selection.maximum_patch_size =
         (std::min)(4000, (std::max)(400, int(6 * std::sqrt(double(mesh.number_of_faces())))));
+    return selection;
+  }
+
+  static Selection_parameters small(Selection_parameters selection)
+  {
+    selection.maximum_patch_size = 200;
     return selection;
   }
 
@@ -198,25 +262,25 @@ private:
     return any;
   }
 
-  // one outer iteration; false if it was cut short
-  bool iterate()
+  // visits the wanted faces until all are touched; false if it was cut short
+  bool visit(const std::vector<char>& is_wanted, Patch_selection& selection)
   {
     const Indexed_mesh& mesh = m_state.mesh;
     std::vector<int> seeds;
     for(int f = 0; f < mesh.number_of_faces(); ++f)
-      if(m_is_active[f])
+      if(is_wanted[f])
         seeds.push_back(f);
     for(std::size_t i = seeds.size(); i > 1; --i)
       std::swap(seeds[i - 1], seeds[m_random.get_int(0, int(i))]);
-    m_is_untouched = m_is_active;
-    m_selection.forget_visits();
+    m_is_untouched = is_wanted;
+    selection.forget_visits();
 
     while(true)
     {
       if(!may_go_on())
         return false;
       const auto start = std::chrono::steady_clock::now();
-      std::vector<std::vector<int>> patches = select_round(seeds);
+      std::vector<std::vector<int>> patches = select_round(seeds, selection);
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
@@ -240,7 +304,7 @@ private:
 
   // grows face-disjoint patches from untouched seeds until the mesh is full; drops the seeds that
   // are touched
-  std::vector<std::vector<int>> select_round(std::vector<int>& seeds)
+  std::vector<std::vector<int>> select_round(std::vector<int>& seeds, Patch_selection& selection)
   {
     const Indexed_mesh& mesh = m_state.mesh;
     std::vector<std::vector<int>> patches;
@@ -263,8 +327,8 @@ private:
         continue;
       }
       std::vector<int> patch =
-        m_selection.grow(seed, m_geometry, [&](int f) { return m_is_taken[f] != 0; });
-      for(const int f : m_selection.touched(patch))
+        selection.grow(seed, m_geometry, [&](int f) { return m_is_taken[f] != 0; });
+      for(const int f : selection.touched(patch))
         m_is_untouched[f] = 0;
       for(const int f : patch)
         m_is_taken[f] = 1;
@@ -354,7 +418,7 @@ private:
         break;
       start = std::chrono::steady_clock::now();
       const Acceptance_test::Decision decision =
-        w.acceptance.decide(s.patch, m_state, w.mover, m_density, m_worst_allowed);
+        w.acceptance.decide(s.patch, m_state, w.mover, m_density, m_limits);
       if(pass == 0)
         s.decision = decision;
       if(decision.accepted)
@@ -466,12 +530,13 @@ private:
   Result& m_result;
   std::chrono::steady_clock::time_point m_start;
   CGAL::Random m_random;
-  Patch_selection m_selection;
+  Patch_selection m_selection, m_small_selection;
   For_each_patch<ConcurrencyTag, Workspace> m_for_each;
   Face_geometry m_geometry;
   std::vector<double> m_edge_length; // per vertex, of the input
   std::vector<char> m_is_active, m_is_untouched, m_is_taken, m_is_near, m_moved;
-  double m_worst_allowed = 0, m_cap = 0;
+  Acceptance_test::Limits m_limits{0, 0};
+  double m_cap = 0;
 };
 
 } // namespace internal

@@ -82,7 +82,8 @@ public:
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
       (is_conformal && flattening.distortion < parameters.conformal_limit) ||
-      (run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
+      (!m_has_empty_edge && // its weights are not defined there
+       run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
            flattening) &&
        is_usable(triangles, flattening.positions)) ||
       (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), flattening) &&
@@ -110,12 +111,14 @@ private:
   {
     m_shapes.clear();
     m_area = 0;
+    m_has_empty_edge = false;
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const int* v = &triangles.corner_vertex[3 * t];
       const Vector_3 &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
       m_shapes.push_back(signed_shape(a, b, c, (b - a).cross(c - a)));
       m_area += 0.5 * m_shapes.back().determinant();
+      m_has_empty_edge = m_has_empty_edge || a == b || b == c || c == a;
     }
     const double mean_length = std::sqrt(m_area / triangles.number_of_faces());
     for(Eigen::Matrix2d& s : m_shapes)
@@ -223,6 +226,7 @@ private:
   Surface_mesh m_mesh;
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;
+  bool m_has_empty_edge = false;
   Planar_optimizer m_optimizer;
 };
 

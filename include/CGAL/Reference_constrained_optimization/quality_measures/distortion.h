@@ -74,7 +74,7 @@ inline bool is_same_face(const Indexed_mesh& mesh, const Indexed_mesh& other, in
  * distorts, and returns the figures of it.
  *
  * For every triangle, \f$ J \f$ is the Jacobian of the affine map from the source's triangle to the
- * mesh's, after both meshes were scaled to the same area; its value is
+ * mesh's, after the source was scaled to the area of the other; its value is
  * \f$ (\|J\|_F^2 + \|J^{-1}\|_F^2) / 2 \f$. Quads are split, in both meshes along the diagonal that
  * is shorter in the source. All triangles weigh the same.
  *
@@ -83,6 +83,8 @@ inline bool is_same_face(const Indexed_mesh& mesh, const Indexed_mesh& other, in
  * \param mesh the mesh
  * \param np_source the parameter `vertex_point_map` of `source`
  * \param np the parameter `vertex_point_map` of `mesh`
+ * \param target_area the area to which the source is scaled; if it is 0, that of `mesh`. For a mesh
+ *        on a reference give the reference's, which does not depend on where the vertices are.
  *
  * \throws Invalid_input if the meshes do not correspond or one of them has no area.
  */
@@ -94,18 +96,20 @@ Distortion_statistics
 distortion_statistics(const SourceMesh& source,
                       const FaceGraph& mesh,
                       const NamedParametersSource& np_source = parameters::default_values(),
-                      const NamedParameters& np = parameters::default_values())
+                      const NamedParameters& np = parameters::default_values(),
+                      double target_area = 0)
 {
   const internal::Mesh_copy from = internal::read_measured_mesh(source, np_source, "source");
   const internal::Mesh_copy to = internal::read_measured_mesh(mesh, np, "mesh");
   if(from.points.size() != to.points.size() ||
      from.mesh.number_of_faces() != to.mesh.number_of_faces())
     throw Invalid_input("source and mesh: the numbers of vertices or faces differ");
-  const double from_area = internal::surface_area(from.mesh, from.points);
-  const double to_area = internal::surface_area(to.mesh, to.points);
-  if(!(from_area > 0) || !(to_area > 0))
+  const double source_area = internal::surface_area(from.mesh, from.points);
+  if(target_area == 0)
+    target_area = internal::surface_area(to.mesh, to.points);
+  if(!(source_area > 0) || !(target_area > 0))
     throw Invalid_input("source and mesh: one of them has no area");
-  const double scale = std::sqrt(from_area / to_area);
+  const double scale = std::sqrt(source_area / target_area); // of the mesh, instead of the source
 
   Distortion_statistics result;
   std::vector<double> values;
