@@ -109,10 +109,18 @@ namespace CGAL {
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`0.25`}
  *   \cgalParamNEnd
+ *   \cgalParamNBegin{drift_bound}
+ *     \cgalParamDescription{a length: no step may take a vertex of the reference further than this
+ *                           away from the mesh, or further yet if it was beyond already; four
+ *                           fifths of it where the mesh is not bad. Infinity switches the test
+ *                           off}
+ *     \cgalParamType{`double`}
+ *     \cgalParamDefault{1.2 mean edge lengths of the reference}
+ *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
- *                           less than this part of it; single elements count with a capped value
- *                           here}
+ *                           less than this part of it, both with single elements capped and
+ *                           without}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`1e-3`}
  *   \cgalParamNEnd
@@ -120,6 +128,23 @@ namespace CGAL {
  *     \cgalParamDescription{the largest number of faces of a patch}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: six times the square root of the number of faces, between 400 and 4000}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{relax_constraints}
+ *     \cgalParamDescription{no effect yet: constrained vertices and border vertices stay where they
+ *                           are}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`false`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{use_on_surface_steps}
+ *     \cgalParamDescription{no effect yet: every patch is flattened}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`true`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{use_finishing_stage}
+ *     \cgalParamDescription{whether, in the end, the worst elements are visited again in small
+ *                           patches around them}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{vertex_location_map}
  *     \cgalParamDescription{receives for every vertex that is not isolated where it lies on the

@@ -92,11 +92,12 @@ namespace parameters {
   }
 /// \addtogroup PkgReferenceConstrainedOptimizationRef
 /// @{
+
 /// starts a list with \f$ \epsilon_d \f$, the largest cost of a face in a patch's cone proxy.
 CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
 /// starts a list with the relative decrease per iteration below which the optimization stops.
 CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
-/// starts a list with the largest distance between the mesh and the reference that is wanted.
+/// starts a list with the largest distance from the reference to the mesh that steps may cause.
 CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
 /// starts a list with whether patches may be optimized directly on the reference.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)

@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -63,17 +64,39 @@ inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
   return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
 }
 
+// Jacobian of one element on the surface
+template <typename VertexAccess>
+Eigen::Matrix2d element_jacobian(const Element_set::Element& element, const VertexAccess& vertex)
+{
+  const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
+                      &c = vertex(element.vertices[2]);
+  return signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal) *
+         element.rest_inverse;
+}
+
 // density of one element on the surface
 template <typename Density, typename VertexAccess>
 double element_energy(const Density& density,
                       const Element_set::Element& element,
                       const VertexAccess& vertex)
 {
-  const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
-                      &c = vertex(element.vertices[2]);
-  const Eigen::Matrix2d shape =
-    signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal);
-  return density.value(shape * element.rest_inverse);
+  return density.value(element_jacobian(element, vertex));
+}
+
+// cosine of the smallest angle of an element's triangle; 1 if a side has no length
+template <typename VertexAccess>
+double smallest_angle_cosine(const Element_set::Element& element, const VertexAccess& vertex)
+{
+  double largest = -1;
+  for(int i = 0; i < 3; ++i)
+  {
+    const Vector_3& o = vertex(element.vertices[i]).position;
+    const Vector_3 a = vertex(element.vertices[(i + 1) % 3]).position - o;
+    const Vector_3 b = vertex(element.vertices[(i + 2) % 3]).position - o;
+    const double lengths = a.norm() * b.norm();
+    largest = (std::max)(largest, lengths > 0 ? a.dot(b) / lengths : 1.);
+  }
+  return largest;
 }
 
 // Figures of the whole mesh. Sums run in the order of the faces.
@@ -81,7 +104,8 @@ struct Global_measure
 {
   double energy = 0;        // sum of densities
   double capped_energy = 0; // the same, each density capped
-  double worst = 0;         // largest density
+  double worst = 0;         // largest density of an element that is not inverted
+  double sharpest = -1;     // largest cosine of an angle of an element
   std::size_t flips = 0, fold_edges = 0;
 };
 
@@ -103,10 +127,13 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
         is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
   for(int e = 0; e < state.elements.size(); ++e)
   {
-    const double d = element_energy(density, state.elements[e], vertex);
+    const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
+    const double d = density.value(J);
     m.energy += d;
     m.capped_energy += (std::min)(d, cap);
-    m.worst = (std::max)(m.worst, d);
+    if(J.determinant() > 0)
+      m.worst = (std::max)(m.worst, d);
+    m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(state.elements[e], vertex));
   }
   return m;
 }

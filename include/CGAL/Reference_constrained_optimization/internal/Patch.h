@@ -31,8 +31,22 @@ struct Patch
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
 
+  // the face of polygons() that a triangle is part of, and the first triangle of such a face
+  int polygon_of(int triangle) const { return is_split ? split_polygon[triangle] : triangle; }
+  int triangle_of(int polygon) const { return is_split ? first_triangle[polygon] : polygon; }
+
   bool is_split = false;
   Indexed_mesh split;
+  std::vector<int> split_polygon, first_triangle;
+
+  // a vertex of R whose closest point of the mesh is in the patch
+  struct Guest
+  {
+    int vertex;      // of R
+    int polygon;     // local face that holds its closest point
+    double distance; // to it
+  };
+  std::vector<Guest> guests;
 };
 
 // Builds patches; keeps its index maps from call to call.
@@ -106,12 +120,16 @@ private:
       points.push_back(p.position);
     std::vector<int> begins(1, 0), corners;
     for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
+    {
+      patch.first_triangle.push_back(int(begins.size()) - 1);
       for(const auto& t : split_face(patch.polygons, points, f))
       {
+        patch.split_polygon.push_back(f);
         for(const int c : t)
           corners.push_back(patch.polygons.corner_vertex[c]);
         begins.push_back(int(corners.size()));
       }
+    }
     patch.split = Indexed_mesh(std::move(begins), std::move(corners), int(points.size()));
   }
 

@@ -128,54 +128,12 @@ public:
     return closest_in_face(p, m_triangle_face[hit.second - m_triangles.begin()]);
   }
 
-  // Local closest point: from `face` to ever closer neighbours. Never leaves the sheet it starts on.
+  // local closest point, from `face` on
   Surface_point descend(const Vector_3& p, int face) const
   {
-    Surface_point best = closest_in_face(p, face);
-    double best_distance = (best.position - p).squaredNorm();
-    while(true)
-    {
-      const int begin = m_mesh.face_begin[best.face];
-      int zeros = 0, zero = -1, one = -1;
-      for(int i = 0; i < 3; ++i)
-        if(best.barycentric(i) == 0)
-        {
-          ++zeros;
-          zero = i;
-        }
-        else
-          one = i;
-      if(zeros == 0)
-        return best;
-
-      Surface_point candidate = best;
-      double distance = best_distance;
-      const auto consider = [&](int f) {
-        const Surface_point s = closest_in_face(p, f);
-        const double d = (s.position - p).squaredNorm();
-        if(d < distance)
-        {
-          distance = d;
-          candidate = s;
-        }
-      };
-      if(zeros == 1)
-      {
-        const int o = m_mesh.opposite[m_mesh.next(begin + zero)];
-        if(o >= 0)
-          consider(m_mesh.corner_face[o]);
-      }
-      else
-      {
-        const int v = m_mesh.corner_vertex[begin + one];
-        for(int k = m_mesh.vertex_begin[v]; k < m_mesh.vertex_begin[v + 1]; ++k)
-          consider(m_mesh.corner_face[m_mesh.vertex_corners[k]]);
-      }
-      if(!(distance < best_distance * (1 - 1e-12)))
-        return best;
-      best = candidate;
-      best_distance = distance;
-    }
+    const Foot foot =
+      descend_to(m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face);
+    return {foot.position, foot.face, foot.barycentric};
   }
 
   // whether `to` can be reached from `from` over vertices of R within the given length of path

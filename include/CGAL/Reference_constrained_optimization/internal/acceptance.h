@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Patch.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -30,11 +31,13 @@ struct Patch_measure
 class Acceptance_test
 {
 public:
-  // bounds on the density of a single element
+  // bounds on single elements and on single vertices of R
   struct Limits
   {
     double worst; // no step may take an element beyond it, or further beyond
-    double bad;   // elements beyond it have a right to get better by all means
+    double bad;   // elements beyond it have their angles tested, too:
+    double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
+    double drift; // no step may take a vertex of R further than this from the mesh, or further yet
   };
 
   struct Decision
@@ -52,7 +55,7 @@ public:
   {
     Decision decision;
     const int n = int(patch.vertices.size());
-    m_worst_allowed = limits.worst;
+    m_limits = limits;
     prepare(patch, state);
     decision.before = measure(patch, density, patch.placed, m_before, nullptr);
     m_is_bad.assign(n, 0);
@@ -70,6 +73,7 @@ public:
       place(patch, mover);
       m_is_offender.assign(n, 0);
       decision.after = measure(patch, density, m_candidate, m_after, &m_before);
+      visit_guests(patch, state.reference);
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.energy < decision.before.energy;
       if(!m_exceeds && (defects < 0 || (defects == 0 && falls)))
@@ -92,6 +96,7 @@ public:
   // what was accepted, and the part of its way that each vertex went
   const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
   const std::vector<double>& steps() const { return m_step; }
+  const std::vector<Patch::Guest>& guests() const { return m_guests; }
 
 private:
   // per face and corner figures of a measure, to tell what is new
@@ -101,7 +106,7 @@ private:
     std::vector<char> flipped;     // per face
     std::vector<char> folded;      // per corner
     std::vector<double> densities; // per element
-    std::vector<double> turns;     // per corner: cosine between R's normals at the half-edge's ends
+    std::vector<double> cosines;   // per bad element: cosine of its smallest angle
   };
 
   void prepare(const Patch& patch, const Optimization_state& state)
@@ -128,6 +133,7 @@ private:
     details.flipped.resize(mesh.number_of_faces());
     details.folded.assign(mesh.number_of_corners(), 0);
     details.densities.resize(patch.elements.size());
+    details.cosines.resize(patch.elements.size());
     for(int f = 0; f < mesh.number_of_faces(); ++f)
     {
       details.normals[f] = face_normal(mesh, vertex, f);
@@ -156,29 +162,15 @@ private:
           mark_face(mesh, mesh.corner_face[o]);
       }
     }
-    // An edge that comes to join places where R looks in nearly opposite directions cuts off the
-    // feature between them. Vertices of bad elements are exempt: held here, they would stay bad.
-    // (On armadillo the bound of 120 degrees lowers the drift from 1.5 to 1.2 mean edges and costs
-    // 0.05 degrees of the mean angle; one of 90 costs three times that and much of the minimum.)
-    const double smallest_turn = -0.5;
-    details.turns.resize(mesh.number_of_corners());
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-    {
-      const Vector_3 &a = placed[mesh.source(c)].normal, &b = placed[mesh.target(c)].normal;
-      details.turns[c] = a.dot(b) / (a.norm() * b.norm());
-      if(before && details.turns[c] < smallest_turn && details.turns[c] < before->turns[c] &&
-         !m_is_bad[mesh.source(c)] && !m_is_bad[mesh.target(c)])
-      {
-        m_exceeds = true;
-        m_is_offender[mesh.source(c)] = m_is_offender[mesh.target(c)] = 1;
-      }
-    }
     for(std::size_t e = 0; e < patch.elements.size(); ++e)
     {
       const double d = element_energy(density, patch.elements[e], vertex);
       details.densities[e] = d;
+      details.cosines[e] = d > m_limits.bad ? smallest_angle_cosine(patch.elements[e], vertex) : -1;
       m.energy += d;
-      if(before && d > m_worst_allowed && d > before->densities[e])
+      if(before && ((d > m_limits.worst && d > before->densities[e]) ||
+                    (details.cosines[e] > m_limits.sharpest &&
+                     details.cosines[e] > before->cosines[e])))
       {
         m_exceeds = true;
         for(const int v : patch.elements[e].vertices)
@@ -186,6 +178,36 @@ private:
       }
     }
     return m;
+  }
+
+  // Looks where the vertices of R that are guests of the patch find it now; faces of the mesh that
+  // are all on R may still have cut off what is between them.
+  void visit_guests(const Patch& patch, const Reference_surface& reference)
+  {
+    const auto point = [&](int v) -> const Vector_3& { return m_candidate[v].position; };
+    const auto is_bad = [&](int polygon) {
+      const int begin = patch.polygons.face_begin[polygon];
+      for(int c = begin; c < patch.polygons.face_begin[polygon + 1]; ++c)
+        if(m_is_bad[patch.polygons.corner_vertex[c]])
+          return true;
+      return false;
+    };
+    m_guests = patch.guests;
+    for(Patch::Guest& guest : m_guests)
+    {
+      const Foot foot = descend_to(patch.triangles(), point, reference.points()[guest.vertex],
+                                   patch.triangle_of(guest.polygon));
+      const double before = guest.distance;
+      guest.polygon = patch.polygon_of(foot.face);
+      guest.distance = std::sqrt(foot.squared_distance);
+      // held at the bound, bad elements would stay bad: a fifth of it is reserved for them
+      const double bound = (is_bad(guest.polygon) ? 1. : 0.8) * m_limits.drift;
+      if(guest.distance > bound && guest.distance > before)
+      {
+        m_exceeds = true;
+        mark_face(patch.polygons, guest.polygon);
+      }
+    }
   }
 
   void mark_face(const Indexed_mesh& mesh, int f)
@@ -242,7 +264,8 @@ private:
         cut(patch, v, attempt < 3 ? 0.4 : 0.);
   }
 
-  double m_worst_allowed = 0;
+  Limits m_limits{0, 0, 1, 0};
+  std::vector<Patch::Guest> m_guests;
   bool m_exceeds = false;
   std::vector<double> m_step;
   std::vector<char> m_needs_placing, m_is_offender, m_is_bad;

@@ -55,6 +55,72 @@ inline Vector_3 closest_barycentric(const Vector_3& p,
   return on_sides();
 }
 
+// a point of a triangle mesh that is a local minimum of the distance to another one
+struct Foot
+{
+  int face = -1;
+  Vector_3 barycentric = Vector_3::Zero();
+  Vector_3 position = Vector_3::Zero();
+  double squared_distance = 0;
+};
+
+// Local closest point: from `face` to ever closer neighbours. Never leaves the sheet it starts on.
+// `point(v)` is the position of a vertex.
+template <typename PointAccess>
+Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector_3& p, int face)
+{
+  const auto closest_in_face = [&](int f) {
+    const int* v = &mesh.corner_vertex[mesh.face_begin[f]];
+    const Vector_3 &a = point(v[0]), &b = point(v[1]), &c = point(v[2]);
+    Foot foot;
+    foot.face = f;
+    foot.barycentric = closest_barycentric(p, a, b, c);
+    foot.position =
+      foot.barycentric(0) * a + foot.barycentric(1) * b + foot.barycentric(2) * c;
+    foot.squared_distance = (foot.position - p).squaredNorm();
+    return foot;
+  };
+
+  Foot best = closest_in_face(face);
+  while(true)
+  {
+    const int begin = mesh.face_begin[best.face];
+    int zeros = 0, zero = -1, one = -1;
+    for(int i = 0; i < 3; ++i)
+      if(best.barycentric(i) == 0)
+      {
+        ++zeros;
+        zero = i;
+      }
+      else
+        one = i;
+    if(zeros == 0)
+      return best;
+
+    Foot candidate = best;
+    const auto consider = [&](int f) {
+      const Foot foot = closest_in_face(f);
+      if(foot.squared_distance < candidate.squared_distance)
+        candidate = foot;
+    };
+    if(zeros == 1)
+    {
+      const int o = mesh.opposite[mesh.next(begin + zero)];
+      if(o >= 0)
+        consider(mesh.corner_face[o]);
+    }
+    else
+    {
+      const int v = mesh.corner_vertex[begin + one];
+      for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+        consider(mesh.corner_face[mesh.vertex_corners[k]]);
+    }
+    if(!(candidate.squared_distance < best.squared_distance * (1 - 1e-12)))
+      return best;
+    best = candidate;
+  }
+}
+
 } // namespace internal
 } // namespace Reference_constrained_optimization
 } // namespace CGAL

@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
 
@@ -30,6 +31,7 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 30;
+  double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of R
   double energy_tolerance = 1e-3;   // relative decrease of the capped energy per iteration
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
@@ -100,7 +102,14 @@ public:
     // the mean of the better half at most
     const double typical = lower_half_mean();
     m_cap = 10 * typical;
-    m_limits = {before.worst, 1.5 * typical};
+    m_limits.worst = before.worst;
+    m_limits.bad = 1.5 * typical;
+    m_limits.sharpest = before.sharpest;
+    m_limits.drift = m_parameters.drift_bound < 0
+                       ? 1.2 * m_state.reference.mean_edge_length()
+                       : m_parameters.drift_bound;
+    if(std::isfinite(m_limits.drift))
+      m_drift_guard.initialize(m_state);
     before = measure(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
@@ -161,7 +170,7 @@ private:
       const std::size_t n = (std::min)(count, faces.size());
       std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
                         std::greater<std::pair<double, int>>());
-      m_limits.worst = faces.front().first;
+      m_limits.worst = (std::min)(m_limits.worst, faces.front().first);
       std::vector<char> is_wanted(faces.size(), 0);
       double after = 0;
       for(std::size_t i = 0; i < n; ++i)
@@ -203,7 +212,9 @@ private:
 
   static Selection_parameters small(Selection_parameters selection)
   {
-    selection.maximum_patch_size = 200;
+    const int size = 200;
+    if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
+      selection.maximum_patch_size = size;
     return selection;
   }
 
@@ -403,6 +414,7 @@ private:
     if(s.patch.number_of_free_vertices == 0)
       return;
     s.was_tried = true;
+    m_drift_guard.invite(s.patch);
     const bool proposes = w.mover.propose(s.patch, m_density);
     s.path = w.mover.flattening().path;
     s.overlaps = w.mover.overlaps();
@@ -425,6 +437,7 @@ private:
       {
         s.decision.after = decision.after;
         s.patch.placed = w.acceptance.candidate();
+        s.patch.guests = w.acceptance.guests();
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
@@ -478,6 +491,7 @@ private:
           m_moved[v] = 1;
       }
     update_geometry(patch);
+    m_drift_guard.take_back(patch);
   }
 
   void exchange(const Patch& patch, std::vector<Placed_vertex>& placed)
@@ -535,7 +549,8 @@ private:
   Face_geometry m_geometry;
   std::vector<double> m_edge_length; // per vertex, of the input
   std::vector<char> m_is_active, m_is_untouched, m_is_taken, m_is_near, m_moved;
-  Acceptance_test::Limits m_limits{0, 0};
+  Drift_guard m_drift_guard;
+  Acceptance_test::Limits m_limits{0, 0, 1, 0};
   double m_cap = 0;
 };
 

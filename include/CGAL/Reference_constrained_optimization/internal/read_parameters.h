@@ -50,11 +50,17 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
     choose_parameter(get_parameter(np, CGAL::internal_np::maximum_running_time),
                      p.maximum_running_time),
     "maximum_running_time");
+  p.drift_bound = choose_parameter(get_parameter(np, internal_np::drift_bound), p.drift_bound);
+  if(!(p.drift_bound == Loop_parameters().drift_bound || p.drift_bound >= 0))
+    throw Invalid_input("drift_bound must not be negative, but is " +
+                        std::to_string(p.drift_bound));
   p.energy_tolerance =
     choose_parameter(get_parameter(np, internal_np::energy_tolerance), p.energy_tolerance);
   if(!(p.energy_tolerance >= 0))
     throw Invalid_input("energy_tolerance must not be negative, but is " +
                         std::to_string(p.energy_tolerance));
+  if(!choose_parameter(get_parameter(np, internal_np::use_finishing_stage), true))
+    p.maximum_revisits = 0;
   p.selection.developability_threshold =
     checked_positive(choose_parameter(get_parameter(np, internal_np::developability_threshold),
                                       p.selection.developability_threshold),
