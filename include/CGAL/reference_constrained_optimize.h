@@ -115,7 +115,7 @@ namespace CGAL {
  *                           fifths of it where the mesh is not bad. Infinity switches the test
  *                           off}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{1.2 mean edge lengths of the reference}
+ *     \cgalParamDefault{1.2 mean edge lengths of the mesh or of the reference, whichever is larger}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by

@@ -199,13 +199,21 @@ void test_calls()
     CGAL::reference_constrained_optimize(mesh, reference, energy, params::energy_tolerance(0.9));
   RCO_CHECK_LESS_EQUAL(loose.number_of_iterations, plain.number_of_iterations);
 
-  // names whose stages are not there yet do no harm
+  // a name whose stage is not there yet does no harm
   mesh = start;
-  CGAL::reference_constrained_optimize(
-    mesh, reference, energy,
-    params::use_on_surface_steps(false).use_finishing_stage(false).drift_bound(
-      std::numeric_limits<double>::infinity()));
+  CGAL::reference_constrained_optimize(mesh, reference, energy, params::use_on_surface_steps(false));
   RCO_CHECK(same(mesh));
+  // without the last stage and without the guard it still works
+  mesh = start;
+  const RCO::Result bare = CGAL::reference_constrained_optimize(
+    mesh, reference, energy,
+    params::use_finishing_stage(false).drift_bound(std::numeric_limits<double>::infinity()));
+  RCO_CHECK_LESS(bare.final_energy, bare.initial_energy);
+  // a bound of nothing holds every vertex of the reference where the mesh is
+  mesh = start;
+  const RCO::Result tight =
+    CGAL::reference_constrained_optimize(mesh, reference, energy, params::drift_bound(0.));
+  RCO_CHECK_LESS_EQUAL(plain.final_energy, tight.final_energy);
 }
 
 // --------------------------------------------------------------------------------- bad input

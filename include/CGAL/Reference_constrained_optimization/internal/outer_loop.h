@@ -31,7 +31,7 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 30;
-  double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of R
+  double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   double energy_tolerance = 1e-3;   // relative decrease of the capped energy per iteration
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
@@ -105,16 +105,18 @@ public:
     m_limits.worst = before.worst;
     m_limits.bad = 1.5 * typical;
     m_limits.sharpest = before.sharpest;
-    m_limits.drift = m_parameters.drift_bound < 0
-                       ? 1.2 * m_state.reference.mean_edge_length()
-                       : m_parameters.drift_bound;
-    if(std::isfinite(m_limits.drift))
-      m_drift_guard.initialize(m_state);
     before = measure(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
+    // a mesh that is coarser than R is further away from it by nature
+    m_limits.drift =
+      m_parameters.drift_bound < 0
+        ? 1.2 * (std::max)(m_state.reference.mean_edge_length(), mean_edge_length(mesh, points))
+        : m_parameters.drift_bound;
+    if(std::isfinite(m_limits.drift))
+      m_drift_guard.initialize(m_state);
     m_geometry.update(mesh, points);
     compute_edge_lengths(points);
     m_is_active.assign(mesh.number_of_faces(), 0);
