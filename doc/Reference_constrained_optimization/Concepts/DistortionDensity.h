@@ -7,15 +7,26 @@ from an element's rest triangle to the element as it lies on the reference. A po
 means that the element agrees with the orientation of the reference, a negative one that it is
 turned over.
 
-The function must be finite and twice differentiable for *every* Jacobian, those with
-\f$ \det J \le 0 \f$ included: a density with a barrier is continued smoothly behind a cap, so that
-a mesh that starts badly can be compared with itself and repaired. It should not change if a
-rotation is applied after \f$ J \f$.
+The function must
 
-All functions are called from several threads at a time and must not change the object.
+- be finite and twice differentiable for *every* Jacobian, those with \f$ \det J \le 0 \f$ and
+  \f$ J = 0 \f$ included: a density with a barrier is continued smoothly behind a cap, so that a mesh
+  that starts badly can be compared with itself and repaired;
+- be positive, since tolerances are relative and elements are compared by ratios;
+- not change if a rotation is applied after \f$ J \f$, since the frame in which an element is seen
+  turns with it.
+
+It need not be convex. All functions are called from several threads at a time and must not change
+the object.
+
+A symmetric function of the signed singular values is best derived from
+`CGAL::Reference_constrained_optimization::Isotropic_density`, which provides all of this concept.
 
 \cgalHasModel{CGAL::Reference_constrained_optimization::Exponential_MIPS_density}
 \cgalHasModel{CGAL::Reference_constrained_optimization::Symmetric_Dirichlet_density}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Isotropic_density}
+
+\sa `ReferenceConstrainedEnergy`
 */
 class DistortionDensity
 {
@@ -23,18 +34,22 @@ public:
   /// returns the value at `J`.
   double value(const Eigen::Matrix2d& J) const;
 
-  /// returns the derivatives of the value with respect to the entries of `J`.
+  /// returns the derivatives of the value with respect to the entries of `J`, each at the place of
+  /// its entry.
   Eigen::Matrix2d gradient(const Eigen::Matrix2d& J) const;
 
-  /// returns the second derivatives, with the entries of `J` in column-major order.
+  /// returns the second derivatives, with the entries of `J` in column-major order: (0, 0), (1, 0),
+  /// (0, 1), (1, 1). The matrix is symmetric; it need not be positive semi-definite.
   Eigen::Matrix4d hessian(const Eigen::Matrix2d& J) const;
 
   /*!
-  writes the gradient, in column-major order, and the nearest positive semi-definite matrix to the
-  Hessian, and returns the value.
+  writes the gradient, with the entries in column-major order, and a positive semi-definite matrix
+  in place of the Hessian, the nearest one by choice, and returns the value.
 
-  This function is optional: without it the Hessian is projected by a numerical
-  eigen-decomposition. A closed formula is faster.
+  This function is *optional*. Where it is missing, `value()`, `gradient()` and `hessian()` are
+  called, and negative eigenvalues of the Hessian are set to zero by a numerical
+  eigen-decomposition. Where it exists, it is called in place of `gradient()` and `hessian()`; a
+  closed formula is faster.
   */
   double projected_derivatives(const Eigen::Matrix2d& J,
                                Eigen::Vector4d& gradient,

@@ -4,8 +4,12 @@
 
 The concept `ReferenceConstrainedOptimizationVisitor` describes an object that watches an
 optimization and may stop it. It is handed over with the named parameter `visitor`, by `std::ref`
-if the caller wants to read from it afterwards. All calls come from the thread that called
-`CGAL::reference_constrained_optimize()`.
+if the caller wants to read from it afterwards; otherwise a copy is used.
+
+All calls come from the thread that called `CGAL::reference_constrained_optimize()`. If one of them
+throws, the mesh holds the last accepted state and the exception reaches the caller. Rounds follow
+each other within an iteration; those that visit the worst elements at the end come after the last
+iteration and belong to none. If no vertex is free to move there is no call at all.
 
 \cgalHasModel{CGAL::Reference_constrained_optimization::Default_visitor}
 */
@@ -15,7 +19,7 @@ public:
   /// is called before the outer iteration `iteration`, counted from 0.
   void on_iteration_begin(std::size_t iteration);
 
-  /// is called after that iteration with the mean density of the mesh.
+  /// is called after that iteration, also if it was cut short, with the mean density of the mesh.
   void on_iteration_end(std::size_t iteration, double energy);
 
   /// is called before a round of patches that share no face.
@@ -24,9 +28,11 @@ public:
   /// is called after that round.
   void on_round_end();
 
-  /// is called for every patch of the round when it has been decided whether to keep its result.
+  /// is called for every patch of the round, in a fixed order, when it has been decided whether to
+  /// keep its result. Patches that were not visited because the round was cut short are left out.
   void on_patch_end(const CGAL::Reference_constrained_optimization::Patch_report& report);
 
-  /// returns `false` to end the optimization; the mesh then holds the last accepted state.
+  /// returns `false` to end the optimization; the mesh then holds the last accepted state. It is
+  /// asked before every round, and with `CGAL::Sequential_tag` before every patch.
   bool go_further();
 };

@@ -34,10 +34,10 @@ public:
   // bounds on single elements and on single vertices of R
   struct Limits
   {
-    double worst; // no step may take an element beyond it, or further beyond
-    double bad;   // elements beyond it have their angles tested, too:
+    double worst;    // no step may take an element beyond it, or further beyond
+    double bad;      // elements beyond it are allowed more drift
     double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
-    double drift; // no step may take a vertex of R further than this from the mesh, or further yet
+    double drift;    // no step may take a vertex of R further than this from the mesh, or further yet
   };
 
   struct Decision
@@ -106,7 +106,7 @@ private:
     std::vector<char> flipped;     // per face
     std::vector<char> folded;      // per corner
     std::vector<double> densities; // per element
-    std::vector<double> cosines;   // per bad element: cosine of its smallest angle
+    std::vector<double> cosines;   // per element: cosine of its smallest angle
   };
 
   void prepare(const Patch& patch, const Optimization_state& state)
@@ -166,7 +166,7 @@ private:
     {
       const double d = element_energy(density, patch.elements[e], vertex);
       details.densities[e] = d;
-      details.cosines[e] = d > m_limits.bad ? smallest_angle_cosine(patch.elements[e], vertex) : -1;
+      details.cosines[e] = smallest_angle_cosine(patch.elements[e], vertex);
       m.energy += d;
       if(before && ((d > m_limits.worst && d > before->densities[e]) ||
                     (details.cosines[e] > m_limits.sharpest &&

@@ -143,14 +143,16 @@ private:
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
-      m_is_active.assign(mesh.number_of_faces(), 0);
-      const bool moves = activate([&](int v) { return m_moved[v] != 0; }, 1);
-      const bool unfolds = after.flips + after.fold_edges < before.flips + before.fold_edges;
       const double tolerance = m_parameters.energy_tolerance;
       const bool falls =
-        before.energy - after.energy > tolerance * before.energy ||
         before.capped_energy - after.capped_energy > tolerance * before.capped_energy;
-      if(!moves || !(unfolds || falls))
+      const bool repairs = before.energy - after.energy > tolerance * before.energy ||
+                           after.flips + after.fold_edges < before.flips + before.fold_edges;
+      m_is_active.assign(mesh.number_of_faces(), 0);
+      if(!falls && repairs)
+        keep_moved_near_bad(); // all is well elsewhere
+      const bool moves = activate([&](int v) { return m_moved[v] != 0; }, 1);
+      if(!moves || !(repairs || falls))
       {
         m_result.status = Status::converged;
         return true;
@@ -158,6 +160,23 @@ private:
       before = after;
     }
     return m_parameters.number_of_iterations > 0;
+  }
+
+  // forgets the vertices that moved away from bad elements
+  void keep_moved_near_bad()
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    std::vector<char> is_near(mesh.number_of_vertices(), 0);
+    for(const std::pair<double, int>& d : face_densities())
+      if(d.first > m_limits.bad)
+        for(int c = mesh.face_begin[d.second]; c < mesh.face_begin[d.second + 1]; ++c)
+          is_near[mesh.corner_vertex[c]] = 1;
+    const std::vector<char> is_bad = is_near;
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(is_bad[mesh.source(c)] || is_bad[mesh.target(c)])
+        is_near[mesh.source(c)] = is_near[mesh.target(c)] = 1;
+    for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      m_moved[v] = m_moved[v] && is_near[v];
   }
 
   // The worst elements once more, by themselves, in small patches around them, as long as that
