@@ -127,7 +127,7 @@ namespace CGAL {
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch}
  *     \cgalParamType{`int`}
- *     \cgalParamDefault{`0`: six times the square root of the number of faces, between 400 and 4000}
+ *     \cgalParamDefault{`0`: 4.5 times the square root of the number of faces, between 400 and 4000}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
  *     \cgalParamDescription{no effect yet: constrained vertices and border vertices stay where they

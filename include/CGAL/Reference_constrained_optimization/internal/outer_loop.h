@@ -227,7 +227,7 @@ private:
   {
     if(selection.maximum_patch_size == 0)
       selection.maximum_patch_size =
-        (std::min)(4000, (std::max)(400, int(6 * std::sqrt(double(mesh.number_of_faces())))));
+        (std::min)(4000, (std::max)(400, int(4.5 * std::sqrt(double(mesh.number_of_faces())))));
     return selection;
   }
 
