@@ -182,8 +182,7 @@ template <typename ConcurrencyTag = CGAL::Sequential_tag,
           typename Energy,
           typename NamedParameters = parameters::Default_named_parameters,
           typename NamedParametersReference = parameters::Default_named_parameters>
-Reference_constrained_optimization::Result
-reference_constrained_optimize(
+Reference_constrained_optimization::Result reference_constrained_optimize(
   PolygonMesh& mesh,
   const ReferenceMesh& reference,
   const Energy& energy,
@@ -201,9 +200,9 @@ reference_constrained_optimize(
   const auto& own_np_reference = internal::cgal_parameters(np_reference);
 
   const internal::Loop_parameters loop_parameters = internal::read_loop_parameters(own_np);
-  auto vpm = parameters::choose_parameter(
-    parameters::get_parameter(own_np, CGAL::internal_np::vertex_point),
-    CGAL::get_property_map(CGAL::vertex_point, mesh));
+  auto vpm =
+    parameters::choose_parameter(parameters::get_parameter(own_np, CGAL::internal_np::vertex_point),
+                                 CGAL::get_property_map(CGAL::vertex_point, mesh));
   auto reference_vpm = parameters::choose_parameter(
     parameters::get_parameter(own_np_reference, CGAL::internal_np::vertex_point),
     CGAL::get_const_property_map(CGAL::vertex_point, reference));
@@ -246,7 +245,7 @@ reference_constrained_optimize(
   if(result.number_of_free_vertices > 0)
   {
     internal::Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, loop_parameters,
-                                                               visitor, result, start);
+                                                                visitor, result, start);
     try
     {
       loop.run();

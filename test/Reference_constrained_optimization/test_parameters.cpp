@@ -201,7 +201,8 @@ void test_calls()
 
   // a name whose stage is not there yet does no harm
   mesh = start;
-  CGAL::reference_constrained_optimize(mesh, reference, energy, params::use_on_surface_steps(false));
+  CGAL::reference_constrained_optimize(mesh, reference, energy,
+                                       params::use_on_surface_steps(false));
   RCO_CHECK(same(mesh));
   // without the last stage and without the guard it still works
   mesh = start;

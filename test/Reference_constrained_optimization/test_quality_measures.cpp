@@ -46,8 +46,7 @@ void test_angles()
   RCO_CHECK_NEAR(thin.minimum, 15, 1e-9);
   RCO_CHECK_EQUAL(thin.number_below_10, 0u);
   RCO_CHECK_EQUAL(thin.number_below_20, 1u);
-  const RCO::Corner_angle_statistics corners =
-    RCO::corner_angle_statistics(make_mesh<Mesh>(one));
+  const RCO::Corner_angle_statistics corners = RCO::corner_angle_statistics(make_mesh<Mesh>(one));
   RCO_CHECK_NEAR(corners.minimum, 15, 1e-9);
   RCO_CHECK_NEAR(corners.maximum, 90, 1e-9);
   RCO_CHECK_NEAR(corners.mean, 60, 1e-9);
@@ -112,8 +111,7 @@ void test_orientation()
   Shape turned = flat;
   const int middle = 3 * 7 + 3;
   turned.points[middle] = turned.points[middle] + Vector_3(0.3, 0, 0);
-  const RCO::Orientation_defects bad =
-    RCO::orientation_defects(make_mesh<Mesh>(turned), reference);
+  const RCO::Orientation_defects bad = RCO::orientation_defects(make_mesh<Mesh>(turned), reference);
   RCO_CHECK_LESS(0u, bad.number_of_flips);
   RCO_CHECK_LESS(0u, bad.number_of_fold_edges);
   // a reference oriented the other way is turned round
@@ -144,8 +142,7 @@ void test_quads()
   one.points[3].z() = h;
   const Vector_3 &a = one.points[0], &b = one.points[1], &f = one.points[3], &g = one.points[2];
   const Vector_3 n = (f - a).cross(g - b).normalized();
-  const double expected =
-    std::abs(n.dot(b - a)) / (0.5 * ((f - a).norm() + (g - b).norm()));
+  const double expected = std::abs(n.dot(b - a)) / (0.5 * ((f - a).norm() + (g - b).norm()));
   RCO_CHECK_NEAR(RCO::planarity(make_mesh<Mesh>(one)).maximum, expected, 1e-12);
 
   // a corner pushed over the diagonal

@@ -29,7 +29,9 @@ class Exponential_MIPS_density : public Isotropic_density<Exponential_MIPS_densi
 public:
   /// constructs the density. `exponent_factor` must be positive.
   explicit Exponential_MIPS_density(double exponent_factor = 1)
-    : m_factor(exponent_factor), m_cap(2 * exponent_factor + 18), m_threshold(m_factor / m_cap)
+    : m_factor(exponent_factor),
+      m_cap(2 * exponent_factor + 18),
+      m_threshold(m_factor / m_cap)
   {}
 
   /// the factor `k`.
@@ -59,7 +61,8 @@ public:
     const double r1 = s2 * w, r2 = -s1 * w;
     const double r11 = 2 * s1 * s2 * (s1 * s1 - 3 * s2 * s2) / (n * n * n);
     const double r22 = 2 * s1 * s2 * (s2 * s2 - 3 * s1 * s1) / (n * n * n);
-    const double r12 = (6 * s1 * s1 * s2 * s2 - s1 * s1 * s1 * s1 - s2 * s2 * s2 * s2) / (n * n * n);
+    const double r12 =
+      (6 * s1 * s1 * s2 * s2 - s1 * s1 * s1 * s1 - s2 * s2 * s2 * s2) / (n * n * n);
     result.value = f.value;
     result.d1 = f.first * r1;
     result.d2 = f.first * r2;

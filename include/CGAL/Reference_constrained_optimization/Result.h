@@ -15,13 +15,12 @@ namespace Reference_constrained_optimization {
  *
  * says why an optimization ended.
  */
-enum class Status
-{
-  converged,        ///< no patch moves any more, or the energy falls by less than the tolerance.
-  iteration_limit,  ///< `number_of_iterations` outer iterations were made.
-  time_limit,       ///< `maximum_running_time` ran out; the mesh holds the last accepted state.
-  interrupted,      ///< the visitor said stop; the mesh holds the last accepted state.
-  nothing_to_do     ///< no vertex is free to move; only vertices off the reference were projected.
+enum class Status {
+  converged,       ///< no patch moves any more, or the energy falls by less than the tolerance.
+  iteration_limit, ///< `number_of_iterations` outer iterations were made.
+  time_limit,      ///< `maximum_running_time` ran out; the mesh holds the last accepted state.
+  interrupted,     ///< the visitor said stop; the mesh holds the last accepted state.
+  nothing_to_do    ///< no vertex is free to move; only vertices off the reference were projected.
 };
 
 /*!
@@ -71,10 +70,10 @@ struct Result
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.
 
-  std::size_t conformal_flattenings = 0; ///< flattenings accepted from the fast path (LSCM).
+  std::size_t conformal_flattenings = 0;     ///< flattenings accepted from the fast path (LSCM).
   std::size_t convex_border_flattenings = 0; ///< from the fall-back (convex border, then descent).
   std::size_t overlapping_flattenings = 0; ///< locally injective, but with a self-crossing border.
-  std::size_t failed_flattenings = 0; ///< patches given up because neither path was injective.
+  std::size_t failed_flattenings = 0;      ///< patches given up because neither path was injective.
   /// sums over flattened patches of the mean symmetric Dirichlet energy of the flattening (4 is
   /// isometric); divided by the number of flattenings it tells how developable the patches are.
   double sum_of_flattening_distortion = 0;

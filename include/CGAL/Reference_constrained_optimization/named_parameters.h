@@ -42,11 +42,11 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
   /// appends a parameter to a list.
   Named_parameters(const T& v, const Base& base) : Cgal_parameters(v, base) {}
 
-#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                      \
-  template <typename K>                                                                         \
-  Named_parameters<K, internal_np::NAME##_t, Cgal_parameters> NAME(const K& k) const            \
-  {                                                                                             \
-    return Named_parameters<K, internal_np::NAME##_t, Cgal_parameters>(k, *this);               \
+#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                         \
+  template <typename K>                                                                            \
+  Named_parameters<K, internal_np::NAME##_t, Cgal_parameters> NAME(const K& k) const               \
+  {                                                                                                \
+    return Named_parameters<K, internal_np::NAME##_t, Cgal_parameters>(k, *this);                  \
   }
   CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
   CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
@@ -81,14 +81,14 @@ cgal_parameters(const CGAL::Named_function_parameters<T, Tag, Base>& np)
 
 namespace parameters {
 
-#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                       \
-  template <typename K>                                                                          \
-  Reference_constrained_optimization::Named_parameters<                                          \
-    K, Reference_constrained_optimization::internal_np::NAME##_t>                                \
-  NAME(const K& k)                                                                               \
-  {                                                                                              \
-    return Reference_constrained_optimization::Named_parameters<                                 \
-      K, Reference_constrained_optimization::internal_np::NAME##_t>(k);                          \
+#define CGAL_RCO_ADD_NAMED_PARAMETER(NAME)                                                         \
+  template <typename K>                                                                            \
+  Reference_constrained_optimization::Named_parameters<                                            \
+    K, Reference_constrained_optimization::internal_np::NAME##_t>                                  \
+  NAME(const K& k)                                                                                 \
+  {                                                                                                \
+    return Reference_constrained_optimization::Named_parameters<                                   \
+      K, Reference_constrained_optimization::internal_np::NAME##_t>(k);                            \
   }
 /// \addtogroup PkgReferenceConstrainedOptimizationRef
 /// @{

@@ -45,7 +45,8 @@ public:
   };
 
   Flattened_mover(const Reference_surface& reference, const Parameters& parameters)
-    : m_reference(reference), m_parameters(parameters)
+    : m_reference(reference),
+      m_parameters(parameters)
   {}
 
   template <typename Density>
@@ -113,8 +114,8 @@ private:
   bool optimize(const Density& density)
   {
     m_target = m_flattening.positions;
-    return m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps, 1e-8).steps >
-           0;
+    return m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps, 1e-8)
+             .steps > 0;
   }
 
   void set_up_problem(const Patch& patch)

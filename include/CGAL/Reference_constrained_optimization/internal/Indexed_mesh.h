@@ -41,7 +41,8 @@ public:
 
   // faces are given by face_begin and corner_vertex; edges that are not manifold are refused
   Indexed_mesh(std::vector<int> begins, std::vector<int> vertices, int number_of_vertices)
-    : face_begin(std::move(begins)), corner_vertex(std::move(vertices))
+    : face_begin(std::move(begins)),
+      corner_vertex(std::move(vertices))
   {
     corner_face.resize(corner_vertex.size());
     for(int f = 0; f < number_of_faces(); ++f)
@@ -150,7 +151,8 @@ private:
 };
 
 // vector area of a face: half the sum of the cross products around it
-inline Vector_3 face_vector_area(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+inline Vector_3
+face_vector_area(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
 {
   const int begin = mesh.face_begin[f], degree = mesh.degree(f);
   const Vector_3& o = points[mesh.corner_vertex[begin]];

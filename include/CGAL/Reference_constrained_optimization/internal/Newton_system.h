@@ -80,10 +80,7 @@ public:
     m_solver.analyzePattern(m_matrix);
   }
 
-  void set_zero()
-  {
-    std::fill(m_matrix.valuePtr(), m_matrix.valuePtr() + m_matrix.nonZeros(), 0.);
-  }
+  void set_zero() { std::fill(m_matrix.valuePtr(), m_matrix.valuePtr() + m_matrix.nonZeros(), 0.); }
 
   // adds the 2x2 block of variable `a` on the diagonal
   void add_diagonal(int a, const Eigen::Matrix2d& block)

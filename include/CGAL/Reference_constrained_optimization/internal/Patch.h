@@ -20,12 +20,12 @@ struct Patch
   std::vector<int> faces;    // of the whole mesh
   std::vector<int> vertices; // of the whole mesh
 
-  Indexed_mesh polygons;             // the faces, in local vertices
-  std::vector<int> outside_face;     // per corner of polygons: face of the mesh across it if that
-                                     // is not in the patch, else -1
-  std::vector<char> is_free;         // per local vertex
+  Indexed_mesh polygons;         // the faces, in local vertices
+  std::vector<int> outside_face; // per corner of polygons: face of the mesh across it if that
+                                 // is not in the patch, else -1
+  std::vector<char> is_free;     // per local vertex
   int number_of_free_vertices = 0;
-  std::vector<Placed_vertex> placed; // per local vertex, as they are now
+  std::vector<Placed_vertex> placed;          // per local vertex, as they are now
   std::vector<Element_set::Element> elements; // in local vertices
 
   // the faces split into triangles, for flattening and location

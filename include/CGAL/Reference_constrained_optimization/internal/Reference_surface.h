@@ -118,7 +118,8 @@ public:
 
   Surface_point closest_in_face(const Vector_3& p, int f) const
   {
-    return point(f, closest_barycentric(p, corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)));
+    return point(
+      f, closest_barycentric(p, corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)));
   }
 
   // closest point of all of R, by the tree
@@ -131,8 +132,8 @@ public:
   // local closest point, from `face` on
   Surface_point descend(const Vector_3& p, int face) const
   {
-    const Foot foot =
-      descend_to(m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face);
+    const Foot foot = descend_to(
+      m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face);
     return {foot.position, foot.face, foot.barycentric};
   }
 
@@ -144,7 +145,9 @@ public:
     std::unordered_set<int> reached;
     if(from.face == to.face)
       return true;
-    const auto corner = [&](int f, int i) { return m_mesh.corner_vertex[m_mesh.face_begin[f] + i]; };
+    const auto corner = [&](int f, int i) {
+      return m_mesh.corner_vertex[m_mesh.face_begin[f] + i];
+    };
     for(int i = 0; i < 3; ++i)
       queue.push(Entry((corner_point(from.face, i) - from.position).norm(), corner(from.face, i)));
     const std::size_t enough = 2000;

@@ -37,7 +37,7 @@ public:
     double worst;    // no step may take an element beyond it, or further beyond
     double bad;      // elements beyond it are allowed more drift
     double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
-    double drift;    // no step may take a vertex of R further than this from the mesh, or further yet
+    double drift; // no step may take a vertex of R further than this from the mesh, or further yet
   };
 
   struct Decision
@@ -168,9 +168,9 @@ private:
       details.densities[e] = d;
       details.cosines[e] = smallest_angle_cosine(patch.elements[e], vertex);
       m.energy += d;
-      if(before && ((d > m_limits.worst && d > before->densities[e]) ||
-                    (details.cosines[e] > m_limits.sharpest &&
-                     details.cosines[e] > before->cosines[e])))
+      if(before &&
+         ((d > m_limits.worst && d > before->densities[e]) ||
+          (details.cosines[e] > m_limits.sharpest && details.cosines[e] > before->cosines[e])))
       {
         m_exceeds = true;
         for(const int v : patch.elements[e].vertices)

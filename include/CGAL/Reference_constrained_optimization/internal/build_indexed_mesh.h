@@ -60,7 +60,8 @@ Mesh_copy read_face_graph(const FaceGraph& g, const VertexPointMap& vpm, const s
     const int degree = int(corners.size()) - begins.back();
     if(degree < 3 || degree > 4)
       throw Invalid_input(name + ": face " + std::to_string(begins.size() - 1) + " has " +
-                          std::to_string(degree) + " vertices, but only triangles and quads are supported");
+                          std::to_string(degree) +
+                          " vertices, but only triangles and quads are supported");
     begins.push_back(int(corners.size()));
   }
   if(begins.size() == 1)

@@ -13,10 +13,8 @@ namespace internal {
 
 // Barycentric coordinates of the point of triangle abc that is closest to p; entries are exactly
 // zero where the point is on the boundary. Works for degenerate triangles, too.
-inline Vector_3 closest_barycentric(const Vector_3& p,
-                                    const Vector_3& a,
-                                    const Vector_3& b,
-                                    const Vector_3& c)
+inline Vector_3
+closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, const Vector_3& c)
 {
   // minimal distance to the three sides: needed at the boundary only
   const auto on_sides = [&]() {
@@ -75,8 +73,7 @@ Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector
     Foot foot;
     foot.face = f;
     foot.barycentric = closest_barycentric(p, a, b, c);
-    foot.position =
-      foot.barycentric(0) * a + foot.barycentric(1) * b + foot.barycentric(2) * c;
+    foot.position = foot.barycentric(0) * a + foot.barycentric(1) * b + foot.barycentric(2) * c;
     foot.squared_distance = (foot.position - p).squaredNorm();
     return foot;
   };

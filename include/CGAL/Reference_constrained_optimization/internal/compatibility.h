@@ -11,7 +11,8 @@
 #include <CGAL/version.h>
 
 #ifndef CGAL_EIGEN3_ENABLED
-#error "Reference_constrained_optimization needs Eigen: define CGAL_EIGEN3_ENABLED (CMake: link CGAL::Eigen3_support)"
+#error                                                                                             \
+  "Reference_constrained_optimization needs Eigen: define CGAL_EIGEN3_ENABLED (CMake: link CGAL::Eigen3_support)"
 #endif
 
 #include <CGAL/AABB_tree.h>

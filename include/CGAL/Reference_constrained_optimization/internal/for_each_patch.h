@@ -51,8 +51,7 @@ public:
   template <typename Work>
   void operator()(std::size_t n, const Work& work)
   {
-    tbb::parallel_for(std::size_t(0), n,
-                      [&](std::size_t i) { work(m_workspaces.local(), i); });
+    tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) { work(m_workspaces.local(), i); });
   }
 
 private:

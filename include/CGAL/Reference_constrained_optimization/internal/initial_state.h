@@ -26,17 +26,18 @@ namespace internal {
 // Decides which vertices may move: those with faces, away from the border, not constrained and not
 // on a constrained edge.
 template <typename PolygonMesh, typename NamedParameters>
-void collect_free_vertices(const PolygonMesh& g, const NamedParameters& np, Optimization_state& state)
+void collect_free_vertices(const PolygonMesh& g,
+                           const NamedParameters& np,
+                           Optimization_state& state)
 {
   typedef boost::graph_traits<PolygonMesh> Graph_traits;
   const Indexed_mesh& mesh = state.mesh;
   state.is_free.assign(mesh.number_of_vertices(), 0);
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
-    state.is_free[v] =
-      !mesh.is_border_vertex[v] && mesh.vertex_begin[v + 1] > mesh.vertex_begin[v];
+    state.is_free[v] = !mesh.is_border_vertex[v] && mesh.vertex_begin[v + 1] > mesh.vertex_begin[v];
 
-  if constexpr(!parameters::is_default_parameter<
-                 NamedParameters, CGAL::internal_np::vertex_is_constrained_t>::value)
+  if constexpr(!parameters::is_default_parameter<NamedParameters,
+                                                 CGAL::internal_np::vertex_is_constrained_t>::value)
   {
     const auto map = parameters::get_parameter(np, CGAL::internal_np::vertex_is_constrained);
     int i = 0;

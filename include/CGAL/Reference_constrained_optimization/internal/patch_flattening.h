@@ -26,8 +26,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-enum class Flattening_path
-{
+enum class Flattening_path {
   conformal,     // LSCM, found to be injective
   convex_border, // onto a disk, then symmetric Dirichlet descent with a free border
   failed

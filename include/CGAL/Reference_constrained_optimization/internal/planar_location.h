@@ -22,10 +22,8 @@ struct Planar_location
 
 // Walks from triangle `start` to the one that holds p. In a triangulation that is only locally
 // injective the walk stays on the sheet it starts on.
-inline Planar_location walk(const Indexed_mesh& triangles,
-                            const std::vector<Vector_2>& u,
-                            const Vector_2& p,
-                            int start)
+inline Planar_location
+walk(const Indexed_mesh& triangles, const std::vector<Vector_2>& u, const Vector_2& p, int start)
 {
   const auto cross = [](const Vector_2& a, const Vector_2& b) { return a(0) * b(1) - a(1) * b(0); };
   Planar_location location;
@@ -44,8 +42,7 @@ inline Planar_location walk(const Indexed_mesh& triangles,
     for(int i = 0; i < 3; ++i)
     {
       const int o = triangles.opposite[c + (i + 1) % 3];
-      if(b(i) < slack && o >= 0 && triangles.corner_face[o] != from &&
-         (exit < 0 || b(i) < b(exit)))
+      if(b(i) < slack && o >= 0 && triangles.corner_face[o] != from && (exit < 0 || b(i) < b(exit)))
         exit = i;
     }
     if(exit < 0)

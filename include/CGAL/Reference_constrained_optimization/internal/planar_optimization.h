@@ -114,9 +114,8 @@ public:
 
 private:
   template <typename Density>
-  static double value(const Planar_problem& problem,
-                      const Density& density,
-                      const std::vector<Vector_2>& u)
+  static double
+  value(const Planar_problem& problem, const Density& density, const std::vector<Vector_2>& u)
   {
     double sum = 0;
     for(std::size_t e = 0; e < problem.triples.size(); ++e)

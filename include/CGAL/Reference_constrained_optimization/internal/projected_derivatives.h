@@ -22,8 +22,7 @@ auto projected_derivatives(const Density& density,
                            const Eigen::Matrix2d& J,
                            Eigen::Vector4d& gradient,
                            Eigen::Matrix4d& hessian,
-                           int)
-  -> decltype(density.projected_derivatives(J, gradient, hessian))
+                           int) -> decltype(density.projected_derivatives(J, gradient, hessian))
 {
   return density.projected_derivatives(J, gradient, hessian);
 }

@@ -5,7 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H
 
-#include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <cmath>
@@ -46,10 +47,10 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
     get_parameter(np, CGAL::internal_np::number_of_iterations), p.number_of_iterations);
   p.random_seed =
     choose_parameter(get_parameter(np, CGAL::internal_np::random_seed), p.random_seed);
-  p.maximum_running_time = checked_positive(
-    choose_parameter(get_parameter(np, CGAL::internal_np::maximum_running_time),
-                     p.maximum_running_time),
-    "maximum_running_time");
+  p.maximum_running_time =
+    checked_positive(choose_parameter(get_parameter(np, CGAL::internal_np::maximum_running_time),
+                                      p.maximum_running_time),
+                     "maximum_running_time");
   p.drift_bound = choose_parameter(get_parameter(np, internal_np::drift_bound), p.drift_bound);
   if(!(p.drift_bound == Loop_parameters().drift_bound || p.drift_bound >= 0))
     throw Invalid_input("drift_bound must not be negative, but is " +

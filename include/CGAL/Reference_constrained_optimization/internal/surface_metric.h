@@ -16,10 +16,8 @@ namespace internal {
 // The shape of a triangle in space as a 2x2 matrix whose columns are its two edge vectors in an
 // orthonormal frame of its plane. The frame is oriented by `normal`, so that the determinant is
 // negative where the triangle is turned against the surface.
-inline Eigen::Matrix2d signed_shape(const Vector_3& p0,
-                                    const Vector_3& p1,
-                                    const Vector_3& p2,
-                                    const Vector_3& normal)
+inline Eigen::Matrix2d
+signed_shape(const Vector_3& p0, const Vector_3& p1, const Vector_3& p2, const Vector_3& normal)
 {
   const Vector_3 a = p1 - p0, b = p2 - p0;
   const double length = a.norm();

@@ -58,9 +58,9 @@ void write_locations(const PolygonMesh& g,
       const Surface_point& p = state.vertices[i++].on_reference;
       if(p.face >= 0)
         put(map, v,
-            std::make_pair(all_faces[state.reference.original_face(p.face)],
-                           std::array<double, 3>{
-                             {p.barycentric(2), p.barycentric(0), p.barycentric(1)}}));
+            std::make_pair(
+              all_faces[state.reference.original_face(p.face)],
+              std::array<double, 3>{{p.barycentric(2), p.barycentric(0), p.barycentric(1)}}));
     }
   }
 }

@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LOOP_PARAMETERS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LOOP_PARAMETERS_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+struct Loop_parameters
+{
+  std::size_t number_of_iterations = 30;
+  double drift_bound = -1;          // a length; negative: 1.2 mean edge lengths of the coarser mesh
+  double energy_tolerance = 1e-3;   // relative decrease of the capped energy per iteration
+  double movement_tolerance = 0.02; // part of the mean edge length at a vertex
+  double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
+  unsigned int random_seed = 0;
+  int proposals_per_patch = 2;
+  int maximum_revisits = 10; // of the worst elements, at the end
+  int halo = 4; // rings around the patches of a round in which no other patch of it starts
+  Selection_parameters selection;
+  Flattened_mover::Parameters mover;
+};
+
+// Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
+// as fast as their number.
+inline Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
+{
+  if(selection.maximum_patch_size == 0)
+    selection.maximum_patch_size =
+      (std::min)(4000, (std::max)(400, int(4.5 * std::sqrt(double(mesh.number_of_faces())))));
+  return selection;
+}
+
+inline Selection_parameters small(Selection_parameters selection)
+{
+  const int size = 200;
+  if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
+    selection.maximum_patch_size = size;
+  return selection;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LOOP_PARAMETERS_H

@@ -1,0 +1,114 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACTIVE_SET_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACTIVE_SET_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Where another visit is worth its time: only where vertices moved last time.
+
+// the faces at the given vertices, and `rings` rings around them
+inline std::vector<char>
+faces_around(const Indexed_mesh& mesh, const std::vector<char>& is_center, int rings)
+{
+  std::vector<char> is_active(mesh.number_of_faces(), 0);
+  std::vector<char> vertex_is_active = is_center;
+  for(int ring = 0; ring <= rings; ++ring)
+  {
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(vertex_is_active[mesh.corner_vertex[c]])
+        is_active[mesh.corner_face[c]] = 1;
+    if(ring == rings)
+      break;
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(is_active[mesh.corner_face[c]])
+        vertex_is_active[mesh.corner_vertex[c]] = 1;
+  }
+  return is_active;
+}
+
+// the largest density of the elements of every face, with the face
+template <typename Density>
+std::vector<std::pair<double, int>> face_densities(const Optimization_state& state,
+                                                   const Density& density)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  std::vector<std::pair<double, int>> result;
+  for(int f = 0; f < state.mesh.number_of_faces(); ++f)
+  {
+    double largest = 0;
+    for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+      largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
+    result.emplace_back(largest, f);
+  }
+  return result;
+}
+
+// forgets among the vertices that moved those further than a ring from bad elements
+template <typename Density>
+void keep_near_bad(const Optimization_state& state,
+                   const Density& density,
+                   double bad,
+                   std::vector<char>& moved)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  std::vector<char> is_near(mesh.number_of_vertices(), 0);
+  for(const std::pair<double, int>& d : face_densities(state, density))
+    if(d.first > bad)
+      for(int c = mesh.face_begin[d.second]; c < mesh.face_begin[d.second + 1]; ++c)
+        is_near[mesh.corner_vertex[c]] = 1;
+  const std::vector<char> is_bad = is_near;
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(is_bad[mesh.source(c)] || is_bad[mesh.target(c)])
+      is_near[mesh.source(c)] = is_near[mesh.target(c)] = 1;
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+    moved[v] = moved[v] && is_near[v];
+}
+
+// the mean density of the better half of the elements
+template <typename Density>
+double lower_half_mean(const Optimization_state& state, const Density& density)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  std::vector<double> densities(state.elements.size());
+  for(int e = 0; e < state.elements.size(); ++e)
+    densities[e] = element_energy(density, state.elements[e], vertex);
+  std::sort(densities.begin(), densities.end());
+  const std::size_t half = densities.size() / 2 + 1;
+  double sum = 0;
+  for(std::size_t i = 0; i < half; ++i)
+    sum += densities[i];
+  return sum / double(half);
+}
+
+// the mean length of the edges at every vertex
+inline std::vector<double> vertex_edge_lengths(const Indexed_mesh& mesh,
+                                               const std::vector<Vector_3>& points)
+{
+  std::vector<double> lengths(mesh.number_of_vertices(), 0);
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+  {
+    const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
+    for(int k = begin; k < end; ++k)
+      lengths[v] += (points[mesh.target(mesh.vertex_corners[k])] - points[v]).norm();
+    if(end > begin)
+      lengths[v] /= end - begin;
+  }
+  return lengths;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACTIVE_SET_H

@@ -1,0 +1,105 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
+
+#include <chrono>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// what is known of a patch after it was solved
+struct Solved_patch
+{
+  Patch patch;
+  Acceptance_test::Decision decision;
+  std::vector<Placed_vertex> placed;
+  Flattening_path path = Flattening_path::failed;
+  bool was_tried = false; // has free vertices
+  bool overlaps = false;
+  double distortion = 0;
+  double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
+};
+
+// Takes one patch through the steps of the paper: flatten, optimize, map back, accept. One solver
+// for each thread; it keeps its workspace.
+class Patch_solver
+{
+public:
+  Patch_solver(const Optimization_state& state, const Loop_parameters& parameters)
+    : m_builder(state.mesh),
+      m_mover(state.reference, parameters.mover),
+      m_proposals(parameters.proposals_per_patch),
+      m_tolerance(parameters.energy_tolerance)
+  {}
+
+  // reads the state, does not write it
+  template <typename Density>
+  void solve(const std::vector<int>& faces,
+             const Optimization_state& state,
+             const Density& density,
+             const Acceptance_test::Limits& limits,
+             const Drift_guard& drift_guard,
+             Solved_patch& s)
+  {
+    auto start = std::chrono::steady_clock::now();
+    s.patch = m_builder.build(faces, state);
+    s.acceptance_time = seconds_since(start);
+    if(s.patch.number_of_free_vertices == 0)
+      return;
+    s.was_tried = true;
+    drift_guard.invite(s.patch);
+    const bool proposes = m_mover.propose(s.patch, density);
+    s.path = m_mover.flattening().path;
+    s.overlaps = m_mover.overlaps();
+    s.distortion = m_mover.flattening().distortion;
+    s.flattening_time = m_mover.flattening_time();
+    s.optimization_time = m_mover.optimization_time();
+    if(!proposes)
+      return;
+    // one flattening serves several proposals: it costs more than they do
+    for(int pass = 0; pass < m_proposals; ++pass)
+    {
+      if(pass > 0 && !m_mover.propose_again(s.patch, m_acceptance.steps(), density))
+        break;
+      start = std::chrono::steady_clock::now();
+      const Acceptance_test::Decision decision =
+        m_acceptance.decide(s.patch, state, m_mover, density, limits);
+      if(pass == 0)
+        s.decision = decision;
+      if(decision.accepted)
+      {
+        s.decision.after = decision.after;
+        s.patch.placed = m_acceptance.candidate();
+        s.patch.guests = m_acceptance.guests();
+      }
+      s.acceptance_time += seconds_since(start);
+      const double gain = decision.before.energy - decision.after.energy;
+      if(!decision.accepted || gain < m_tolerance * decision.before.energy)
+        break;
+    }
+    s.optimization_time = m_mover.optimization_time();
+    s.placed = s.patch.placed;
+  }
+
+private:
+  Patch_builder m_builder;
+  Flattened_mover m_mover;
+  Acceptance_test m_acceptance;
+  int m_proposals;
+  double m_tolerance;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
