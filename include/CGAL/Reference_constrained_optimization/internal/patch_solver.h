@@ -65,7 +65,7 @@ public:
     s.optimization_time = m_mover.optimization_time();
     if(!proposes)
       return;
-    // one flattening serves several proposals: it costs more than they do
+    // one flattening serves several proposals: it is the most expensive of the steps
     for(int pass = 0; pass < m_proposals; ++pass)
     {
       if(pass > 0 && !m_mover.propose_again(s.patch, m_acceptance.steps(), density))
