@@ -20,6 +20,7 @@ enum use_on_surface_steps_t { use_on_surface_steps };
 enum use_finishing_stage_t { use_finishing_stage };
 enum vertex_location_map_t { vertex_location_map };
 enum maximum_patch_size_t { maximum_patch_size };
+enum use_equal_areas_t { use_equal_areas };
 
 } // namespace internal_np
 
@@ -55,6 +56,7 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
   CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
   CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
   CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
+  CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 };
 
@@ -107,6 +109,8 @@ CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
 CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
 /// starts a list with the largest number of faces of a patch.
 CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
+/// starts a list with whether a compatible mesh's source is scaled to the area of the reference.
+CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
 /// @}
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 

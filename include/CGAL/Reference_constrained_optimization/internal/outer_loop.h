@@ -64,6 +64,8 @@ public:
     // the mean of the better half at most
     const double typical = lower_half_mean(m_state, m_density);
     m_cap = 10 * typical;
+    m_rest_energy =
+      double(m_state.elements.size()) * m_density.value(Eigen::Matrix2d::Identity());
     m_limits.worst = before.worst;
     m_limits.bad = 1.5 * typical;
     m_limits.sharpest = before.sharpest;
@@ -104,10 +106,8 @@ private:
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
-      const double tolerance = m_parameters.energy_tolerance;
-      const bool falls =
-        before.capped_energy - after.capped_energy > tolerance * before.capped_energy;
-      const bool repairs = before.energy - after.energy > tolerance * before.energy ||
+      const bool falls = has_fallen(before.capped_energy, after.capped_energy);
+      const bool repairs = has_fallen(before.energy, after.energy) ||
                            after.flips + after.fold_edges < before.flips + before.fold_edges;
       if(!falls && repairs)
         keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
@@ -121,6 +121,15 @@ private:
       before = after;
     }
     return m_parameters.number_of_iterations > 0;
+  }
+
+  // What is left to gain is what the energy has above that of a mesh whose elements are all at rest.
+  bool has_fallen(double before, double after) const
+  {
+    const double floor = 0.01;
+    const double excess = before - m_rest_energy;
+    const double scale = excess > 0 ? (std::max)(excess, floor * std::abs(before)) : std::abs(before);
+    return before - after > m_parameters.energy_tolerance * scale;
   }
 
   // The worst elements once more, by themselves, in small patches around them, as long as that
@@ -281,6 +290,7 @@ private:
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits{0, 0, 1, 0};
   double m_cap = 0;
+  double m_rest_energy = 0;
 };
 
 } // namespace internal

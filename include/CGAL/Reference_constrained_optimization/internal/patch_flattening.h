@@ -115,7 +115,7 @@ private:
     {
       const int* v = &triangles.corner_vertex[3 * t];
       const Vector_3 &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
-      m_shapes.push_back(signed_shape(a, b, c, (b - a).cross(c - a)));
+      m_shapes.push_back(triangle_shape(a, b, c));
       m_area += 0.5 * m_shapes.back().determinant();
       m_has_empty_edge = m_has_empty_edge || a == b || b == c || c == a;
     }

@@ -33,6 +33,12 @@ signed_shape(const Vector_3& p0, const Vector_3& p1, const Vector_3& p2, const V
   return shape;
 }
 
+// the same with the triangle's own normal; the determinant is not negative
+inline Eigen::Matrix2d triangle_shape(const Vector_3& p0, const Vector_3& p1, const Vector_3& p2)
+{
+  return signed_shape(p0, p1, p2, (p1 - p0).cross(p2 - p0));
+}
+
 // The metric that turns a planar triangle (edge matrix `plane`) into its shape on the surface.
 // Where one of the two is inverted or nearly flat no linear map tells anything about its
 // surroundings: then it is the uniform scaling `fallback_scale`.

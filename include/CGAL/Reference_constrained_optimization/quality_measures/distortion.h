@@ -5,7 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
 
+#include <CGAL/Reference_constrained_optimization/internal/face_correspondence.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
 #include <Eigen/LU>
 
@@ -35,37 +37,6 @@ struct Distortion_statistics
   /// triangles without area in one mesh only or in both; their distortion counts as infinite.
   std::size_t number_of_degenerate_triangles = 0;
 };
-
-namespace internal {
-
-// the edge vectors of a triangle in its own plane, as columns
-inline Eigen::Matrix2d planar_triangle(const Vector_3& a, const Vector_3& b, const Vector_3& c)
-{
-  const Vector_3 u = b - a, v = c - a;
-  const double length = u.norm();
-  Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
-  if(length > 0)
-    m << length, u.dot(v) / length, 0, u.cross(v).norm() / length;
-  return m;
-}
-
-// whether face f has the same vertices in the same cyclic order in both meshes
-inline bool is_same_face(const Indexed_mesh& mesh, const Indexed_mesh& other, int f)
-{
-  const int degree = mesh.degree(f);
-  for(int shift = 0; degree == other.degree(f) && shift < degree; ++shift)
-  {
-    bool is_same = true;
-    for(int i = 0; i < degree && is_same; ++i)
-      is_same = mesh.corner_vertex[mesh.face_begin[f] + i] ==
-                other.corner_vertex[other.face_begin[f] + (i + shift) % degree];
-    if(is_same)
-      return true;
-  }
-  return false;
-}
-
-} // namespace internal
 
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
@@ -116,7 +87,9 @@ distortion_statistics(const SourceMesh& source,
   double sum = 0;
   for(int f = 0; f < from.mesh.number_of_faces(); ++f)
   {
-    if(!internal::is_same_face(from.mesh, to.mesh, f))
+    if(internal::face_rotation(from.mesh, f, to.mesh.degree(f), [&](int i) {
+         return to.mesh.corner_vertex[to.mesh.face_begin[f] + i];
+       }) < 0)
       throw Invalid_input("source and mesh: face " + std::to_string(f) +
                           " does not have the same vertices in both");
     for(const std::array<int, 3>& t : internal::split_face(from.mesh, from.points, f))
@@ -125,9 +98,9 @@ distortion_statistics(const SourceMesh& source,
       for(int i = 0; i < 3; ++i)
         v[i] = from.mesh.corner_vertex[t[i]];
       const Eigen::Matrix2d rest =
-        internal::planar_triangle(from.points[v[0]], from.points[v[1]], from.points[v[2]]);
+        internal::triangle_shape(from.points[v[0]], from.points[v[1]], from.points[v[2]]);
       const Eigen::Matrix2d shape =
-        scale * internal::planar_triangle(to.points[v[0]], to.points[v[1]], to.points[v[2]]);
+        scale * internal::triangle_shape(to.points[v[0]], to.points[v[1]], to.points[v[2]]);
       double value = std::numeric_limits<double>::infinity();
       if(rest.determinant() > 0 && shape.determinant() > 0)
         value =
