@@ -1,0 +1,241 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_COMPATIBLE_INITIAL_MESH_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_COMPATIBLE_INITIAL_MESH_H
+
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/internal/Landmark_map.h>
+#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/boost/graph/helpers.h>
+#include <CGAL/boost/graph/named_params_helper.h>
+
+#include <boost/graph/graph_traits.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * tells what `compatible_initial_mesh()` tried.
+ */
+struct Initial_mesh_report
+{
+  /// trees of landmarks along which the surfaces were cut.
+  std::size_t number_of_trees = 0;
+  /// trees for which both surfaces were laid out in the same convex polygon, every triangle
+  /// positively oriented and the boundary simple by exact predicates: their maps are bijective.
+  std::size_t number_of_bijective_maps = 0;
+  /// the tree of the best map: pairs of positions in the range of landmarks. Positions from the
+  /// number of landmarks on are points of the border that were added.
+  std::vector<std::pair<int, int>> landmark_tree;
+  /// mean of the symmetric Dirichlet density of the best map (4: isometric), the areas equal, each
+  /// triangle capped at 100.
+  double capped_energy = 0;
+};
+
+namespace internal {
+
+// positions of the landmarks' vertices in vertices(g), checked
+template <typename FaceGraph, typename Vertices>
+std::vector<int> landmark_positions(const FaceGraph& g,
+                                    const Vertices& landmarks,
+                                    const Mesh_copy& copy,
+                                    const std::string& name)
+{
+  typedef typename boost::graph_traits<FaceGraph>::vertex_descriptor vertex_descriptor;
+  std::unordered_map<vertex_descriptor, int> position;
+  for(const vertex_descriptor v : vertices(g))
+    position.emplace(v, int(position.size()));
+  std::vector<int> result, pair_of(copy.points.size(), -1);
+  for(const vertex_descriptor v : landmarks)
+  {
+    const std::string pair = std::to_string(result.size());
+    const auto found = position.find(v);
+    if(found == position.end())
+      throw Invalid_input("landmarks: pair " + pair + " names a vertex that the " + name +
+                          " does not have");
+    const int i = found->second;
+    if(copy.mesh.vertex_begin[i] == copy.mesh.vertex_begin[i + 1])
+      throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name +
+                          " (pair " + pair + ") has no face");
+    if(pair_of[i] >= 0)
+      throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name +
+                          " is in two pairs, " + std::to_string(pair_of[i]) + " and " + pair);
+    pair_of[i] = int(result.size());
+    result.push_back(i);
+  }
+  if(result.size() < 3)
+    throw Invalid_input("landmarks: at least three pairs are needed, but there are " +
+                        std::to_string(result.size()));
+  return result;
+}
+
+} // namespace internal
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * makes a mesh with the connectivity of a source and its vertices on a reference from a few pairs
+ * of corresponding vertices: a start for `reference_constrained_optimize()` with
+ * `Compatible_remeshing_energy`.
+ *
+ * Both surfaces are cut along a tree of shortest paths between landmarks, laid in the same order
+ * around each landmark, and laid out in the same convex polygon by mean value coordinates (Floater,
+ * \e Mean \e value \e coordinates, 2003). Each vertex of the source is then located in the
+ * reference's triangles in the plane. That both layouts are bijective is checked by exact
+ * predicates. Since the choice of the tree decides much about the distortion, several are tried,
+ * and the map of least distortion is kept.
+ *
+ * The two surfaces must be closed and of genus 0, or disks. Borders are mapped onto each other.
+ * A reference that is closed and oriented the other way round is turned round first.
+ *
+ * An extremity (a limb, an ear) without a landmark shrinks exponentially in the plane: set a
+ * landmark at the end of each.
+ *
+ * \tparam SourceMesh a model of `FaceListGraph` and `HalfedgeListGraph`, of triangles and quads
+ * \tparam ReferenceMesh the same; quads are split
+ * \tparam LandmarkRange a model of `ConstRange` with value type
+ *         `std::pair<boost::graph_traits<SourceMesh>::vertex_descriptor,
+ *         boost::graph_traits<ReferenceMesh>::vertex_descriptor>`
+ * \tparam OutputMesh a model of `MutableFaceGraph`
+ * \tparam NamedParameters a sequence of \ref bgl_namedparameters "Named Parameters"
+ * \tparam NamedParametersReference the same, for the reference
+ * \tparam NamedParametersOutput the same, for the output
+ *
+ * \param source the mesh whose connectivity the output gets: vertices and faces in the same order,
+ *        landmarks at the points of their counterparts. Vertices without faces keep their points.
+ * \param reference the surface on which the output's vertices lie
+ * \param landmarks three or more pairs. A vertex is in one pair at most; the two of a pair are both
+ *        on the border or both not.
+ * \param output_mesh receives the mesh; what it held is removed
+ * \param np optional parameters of the source and of the search:
+ *
+ * \cgalNamedParamsBegin
+ *   \cgalParamNBegin{vertex_point_map}
+ *     \cgalParamDescription{a property map from the vertices of `source` to points}
+ *     \cgalParamType{a model of `ReadablePropertyMap`}
+ *     \cgalParamDefault{`boost::get(CGAL::vertex_point, source)`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{number_of_iterations}
+ *     \cgalParamDescription{the number of trees that are tried}
+ *     \cgalParamType{`unsigned int`}
+ *     \cgalParamDefault{`6`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{random_seed}
+ *     \cgalParamDescription{the seed from which all trees but the first three are made}
+ *     \cgalParamType{`unsigned int`}
+ *     \cgalParamDefault{`0`}
+ *   \cgalParamNEnd
+ * \cgalNamedParamsEnd
+ *
+ * \param np_reference the parameter `vertex_point_map` of `reference`
+ * \param np_output the parameter `vertex_point_map` of `output_mesh`
+ *
+ * \return what was tried.
+ *
+ * \throws Invalid_input if a mesh cannot be read (see `reference_constrained_optimize()`), has
+ *         several components or another topology than those named above, if a landmark is not a
+ *         vertex with faces or is in two pairs, if there are fewer than three, if landmarks on the
+ *         borders are not in the same order, or if no bijective map was found. `output_mesh` is
+ *         then untouched.
+ */
+template <typename SourceMesh,
+          typename ReferenceMesh,
+          typename LandmarkRange,
+          typename OutputMesh,
+          typename NamedParameters = parameters::Default_named_parameters,
+          typename NamedParametersReference = parameters::Default_named_parameters,
+          typename NamedParametersOutput = parameters::Default_named_parameters>
+Initial_mesh_report
+compatible_initial_mesh(const SourceMesh& source,
+                        const ReferenceMesh& reference,
+                        const LandmarkRange& landmarks,
+                        OutputMesh& output_mesh,
+                        const NamedParameters& np = parameters::default_values(),
+                        const NamedParametersReference& np_reference = parameters::default_values(),
+                        const NamedParametersOutput& np_output = parameters::default_values())
+{
+  using parameters::choose_parameter;
+  using parameters::get_parameter;
+  const auto& own_np = internal::cgal_parameters(np);
+  const std::size_t number_of_trees = choose_parameter(
+    get_parameter(own_np, CGAL::internal_np::number_of_iterations), std::size_t(6));
+  const unsigned int seed =
+    choose_parameter(get_parameter(own_np, CGAL::internal_np::random_seed), 0u);
+  if(number_of_trees == 0)
+    throw Invalid_input("number_of_iterations: at least one tree has to be tried");
+
+  const internal::Mesh_copy from = internal::read_measured_mesh(source, np, "source");
+  const internal::Mesh_copy to = internal::read_measured_mesh(reference, np_reference, "reference");
+  std::vector<typename boost::graph_traits<SourceMesh>::vertex_descriptor> source_vertices;
+  std::vector<typename boost::graph_traits<ReferenceMesh>::vertex_descriptor> reference_vertices;
+  for(const auto& pair : landmarks)
+  {
+    source_vertices.push_back(pair.first);
+    reference_vertices.push_back(pair.second);
+  }
+  const std::vector<int> source_positions =
+    internal::landmark_positions(source, source_vertices, from, "source");
+  const std::vector<int> reference_positions =
+    internal::landmark_positions(reference, reference_vertices, to, "reference");
+
+  internal::Landmark_map map(from, to);
+  map.set_landmarks(source_positions, reference_positions);
+  std::vector<internal::Landmark_map::Tried_tree> tried;
+  const std::vector<internal::Vector_3> points = map.map(int(number_of_trees), seed, tried);
+  Initial_mesh_report report;
+  report.number_of_trees = tried.size();
+  const internal::Landmark_map::Tried_tree* best = nullptr;
+  for(const internal::Landmark_map::Tried_tree& t : tried)
+    if(t.is_bijective)
+    {
+      ++report.number_of_bijective_maps;
+      if(!best || t.distortion < best->distortion)
+        best = &t;
+    }
+  if(!best)
+    throw Invalid_input("landmarks: none of " + std::to_string(tried.size()) +
+                        " trees led to a bijective map; more landmarks, above all at the ends of "
+                        "long parts, may help");
+  report.landmark_tree = best->edges;
+  report.capped_energy = best->distortion;
+
+  auto vpm =
+    choose_parameter(get_parameter(internal::cgal_parameters(np_output),
+                                   CGAL::internal_np::vertex_point),
+                     CGAL::get_property_map(CGAL::vertex_point, output_mesh));
+  typedef typename boost::property_traits<decltype(vpm)>::value_type Point;
+  std::vector<Point> soup_points;
+  for(std::size_t v = 0; v < points.size(); ++v)
+  {
+    const bool is_isolated = from.mesh.vertex_begin[v] == from.mesh.vertex_begin[v + 1];
+    const internal::Vector_3& p = is_isolated ? from.points[v] : points[v];
+    soup_points.emplace_back(p.x(), p.y(), p.z());
+  }
+  std::vector<std::vector<std::size_t>> soup_faces(from.mesh.number_of_faces());
+  for(int c = 0; c < from.mesh.number_of_corners(); ++c)
+    soup_faces[from.mesh.corner_face[c]].push_back(std::size_t(from.mesh.corner_vertex[c]));
+  CGAL::clear(output_mesh);
+  CGAL::Polygon_mesh_processing::polygon_soup_to_polygon_mesh(
+    soup_points, soup_faces, output_mesh, CGAL::parameters::default_values(),
+    CGAL::parameters::vertex_point_map(vpm));
+  return report;
+}
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_COMPATIBLE_INITIAL_MESH_H
