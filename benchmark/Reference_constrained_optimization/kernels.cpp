@@ -138,7 +138,7 @@ void newton_step(benchmark::State& state)
   }
   for(const char is_border : patch.mesh.is_border_vertex)
     problem.is_free.push_back(!is_border);
-  Planar_optimizer optimizer;
+  Projected_newton optimizer;
   optimizer.analyze(problem);
   for(auto _ : state)
   {

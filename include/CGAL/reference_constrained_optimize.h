@@ -36,7 +36,8 @@ namespace CGAL {
  *
  * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
- * mapped back onto the reference. A disk's new positions are kept only if, measured on the
+ * mapped back onto the reference. After the first iteration, disks on which all is well are
+ * optimized in the tangent planes of their vertices instead. A disk's new positions are kept only if, measured on the
  * reference, the number of flipped faces and folded edges falls, or does not change while the
  * energy falls. Border vertices and constrained vertices do not move, not by a bit. All other
  * vertices of the result lie on the reference. The same input and seed give the same bits for any
@@ -119,10 +120,11 @@ namespace CGAL {
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
- *                           less than this part of it, both with single elements capped and
+ *                           less than this part of what it has above the energy of a mesh whose
+ *                           elements are all at rest, both with single elements capped and
  *                           without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`1e-3`}
+ *     \cgalParamDefault{`5e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch}
@@ -136,7 +138,10 @@ namespace CGAL {
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_on_surface_steps}
- *     \cgalParamDescription{no effect yet: every patch is flattened}
+ *     \cgalParamDescription{whether, after the first iteration, patches without flips, folds and bad
+ *                           elements are optimized directly on the reference, in the tangent planes
+ *                           of their vertices: faster, and more accurate where steps are small.
+ *                           With `false` every patch is flattened, as in the paper}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd

@@ -433,7 +433,7 @@ void test_known_optimum(const Density& density, double best, const Matrix_2& map
     m = map.inverse();
 
   const std::vector<Vector_2> before = u;
-  internal::Planar_optimizer optimizer;
+  internal::Projected_newton optimizer;
   optimizer.analyze(problem);
   double energy = energy_of(problem, density, u);
   for(int step = 0; step < 60; ++step)
@@ -520,7 +520,7 @@ void test_newton_step(const Density& density)
     const Eigen::VectorXd expected = -hessian.ldlt().solve(gradient);
 
     std::vector<Vector_2> moved(u);
-    internal::Planar_optimizer optimizer;
+    internal::Projected_newton optimizer;
     optimizer.analyze(problem);
     const auto outcome = optimizer.minimize(problem, density, moved, 1, 1e-14);
     RCO_CHECK_EQUAL(outcome.steps, 1);
@@ -546,7 +546,7 @@ void test_untangling(const Density& density)
   u[14] += Vector_2(1.3, 0.4);
   RCO_CHECK_LESS(0, number_inverted(problem, u));
   const double before = energy_of(problem, density, u);
-  internal::Planar_optimizer optimizer;
+  internal::Projected_newton optimizer;
   optimizer.analyze(problem);
   for(int step = 0; step < 100; ++step)
     optimizer.minimize(problem, density, u, 1, 1e-14);
@@ -558,7 +558,7 @@ void test_untangling(const Density& density)
 template <typename Density>
 void test_planar_optimizer(const Density& density, double best, const std::string& name)
 {
-  const Scope scope("Planar_optimizer, " + name);
+  const Scope scope("Projected_newton, " + name);
   test_known_optimum(density, best, Matrix_2::Identity());
   Matrix_2 map;
   map << 1.5, 0.4, -0.2, 0.7;
@@ -570,7 +570,7 @@ void test_planar_optimizer(const Density& density, double best, const std::strin
   problem.is_free.assign(problem.is_free.size(), 0);
   std::vector<Vector_2> u = planar_points(equilateral_grid(2, 2));
   const std::vector<Vector_2> before = u;
-  internal::Planar_optimizer optimizer;
+  internal::Projected_newton optimizer;
   optimizer.analyze(problem);
   RCO_CHECK_EQUAL(optimizer.minimize(problem, density, u, 10, 1e-9).steps, 0);
   RCO_CHECK(u == before);

@@ -72,10 +72,9 @@ public:
   template <typename SourceMesh, typename NamedParameters = parameters::Default_named_parameters>
   explicit Compatible_remeshing_energy(const SourceMesh& source,
                                        const NamedParameters& np = parameters::default_values())
-    : m_use_equal_areas(
-        parameters::choose_parameter(parameters::get_parameter(internal::cgal_parameters(np),
-                                                               internal_np::use_equal_areas),
-                                     true))
+    : m_use_equal_areas(parameters::choose_parameter(
+        parameters::get_parameter(internal::cgal_parameters(np), internal_np::use_equal_areas),
+        true))
   {
     internal::Mesh_copy copy = internal::read_measured_mesh(source, np, "source");
     m_area = internal::surface_area(copy.mesh, copy.points);
@@ -131,17 +130,20 @@ private:
     const std::string start = "Compatible_remeshing_energy: ";
     const std::size_t n = std::size_t(m_source.number_of_faces());
     if(f >= n)
-      throw Invalid_input(start + "face " + std::to_string(f) + " of the mesh has no counterpart: " +
-                          "the source has " + std::to_string(n) + " faces, the mesh " +
+      throw Invalid_input(start + "face " + std::to_string(f) +
+                          " of the mesh has no counterpart: " + "the source has " +
+                          std::to_string(n) + " faces, the mesh " +
                           std::to_string(context.number_of_faces()));
     const int rotation = internal::face_rotation(m_source, int(f), context.degree(f),
                                                  [&](int i) { return context.vertex(f, i); });
     if(rotation < 0)
-      throw Invalid_input(start + "face " + std::to_string(f) + " has the vertices " +
-                          list(context.degree(f), [&](int i) { return context.vertex(f, i); }) +
-                          " in the mesh, but " + list(m_source.degree(int(f)), [&](int i) {
-                            return m_source.corner_vertex[m_source.face_begin[f] + i];
-                          }) + " in the source");
+      throw Invalid_input(
+        start + "face " + std::to_string(f) + " has the vertices " +
+        list(context.degree(f), [&](int i) { return context.vertex(f, i); }) +
+        " in the mesh, but " +
+        list(m_source.degree(int(f)),
+             [&](int i) { return m_source.corner_vertex[m_source.face_begin[f] + i]; }) +
+        " in the source");
     if(f + 1 == context.number_of_faces())
     {
       if(f + 1 < n)
@@ -150,8 +152,7 @@ private:
                             std::to_string(n) + " faces, the mesh " + std::to_string(f + 1));
       if(context.number_of_vertices() != std::size_t(m_source.number_of_vertices()))
         throw Invalid_input(start + "all faces agree, but the source has " +
-                            std::to_string(m_source.number_of_vertices()) +
-                            " vertices, the mesh " +
+                            std::to_string(m_source.number_of_vertices()) + " vertices, the mesh " +
                             std::to_string(context.number_of_vertices()));
     }
     return rotation;

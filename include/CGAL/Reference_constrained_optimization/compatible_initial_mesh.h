@@ -69,8 +69,8 @@ std::vector<int> landmark_positions(const FaceGraph& g,
                           " does not have");
     const int i = found->second;
     if(copy.mesh.vertex_begin[i] == copy.mesh.vertex_begin[i + 1])
-      throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name +
-                          " (pair " + pair + ") has no face");
+      throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name + " (pair " +
+                          pair + ") has no face");
     if(pair_of[i] >= 0)
       throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name +
                           " is in two pairs, " + std::to_string(pair_of[i]) + " and " + pair);
@@ -213,10 +213,9 @@ compatible_initial_mesh(const SourceMesh& source,
   report.landmark_tree = best->edges;
   report.capped_energy = best->distortion;
 
-  auto vpm =
-    choose_parameter(get_parameter(internal::cgal_parameters(np_output),
-                                   CGAL::internal_np::vertex_point),
-                     CGAL::get_property_map(CGAL::vertex_point, output_mesh));
+  auto vpm = choose_parameter(
+    get_parameter(internal::cgal_parameters(np_output), CGAL::internal_np::vertex_point),
+    CGAL::get_property_map(CGAL::vertex_point, output_mesh));
   typedef typename boost::property_traits<decltype(vpm)>::value_type Point;
   std::vector<Point> soup_points;
   for(std::size_t v = 0; v < points.size(); ++v)

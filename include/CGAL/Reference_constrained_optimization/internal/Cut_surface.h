@@ -43,7 +43,7 @@ public:
   // lengths of the shortest paths from a landmark within one of its sectors
   struct Distances
   {
-    std::vector<double> length;    // per vertex
+    std::vector<double> length;      // per vertex
     std::vector<Vertex> predecessor; // per vertex
   };
 
@@ -75,8 +75,8 @@ public:
   // the copy's property maps are its own
   Cut_surface(const Cut_surface& other)
     : m_mesh(other.m_mesh),
-      m_is_taken(m_mesh.property_map<Vertex, bool>("v:is_taken").first),
-      m_is_cut(m_mesh.property_map<Edge, bool>("e:is_cut").first),
+      m_is_taken(m_mesh.add_property_map<Vertex, bool>("v:is_taken", false).first),
+      m_is_cut(m_mesh.add_property_map<Edge, bool>("e:is_cut", false).first),
       m_border(other.m_border),
       m_landmarks(other.m_landmarks),
       m_arcs(other.m_arcs),
@@ -203,7 +203,8 @@ public:
   // that are not taken
   Distances distances(int landmark) const
   {
-    return search(landmark, [](Vertex) { return false; }, [](Halfedge) { return true; });
+    return search(
+      landmark, [](Vertex) { return false; }, [](Halfedge) { return true; });
   }
   Distances distances(int landmark, const Landmark_tree& tree, int sector) const
   {
@@ -215,10 +216,8 @@ public:
   }
 
   // length of the path to a landmark that arrives there within a sector; infinite if there is none
-  double length_to(int landmark,
-                   const Landmark_tree& tree,
-                   int sector,
-                   const Distances& distances) const
+  double
+  length_to(int landmark, const Landmark_tree& tree, int sector, const Distances& distances) const
   {
     return last_step(landmark, tree, sector, distances).first;
   }
@@ -362,10 +361,8 @@ private:
     return d;
   }
 
-  std::pair<double, Halfedge> last_step(int landmark,
-                                        const Landmark_tree& tree,
-                                        int sector,
-                                        const Distances& distances) const
+  std::pair<double, Halfedge>
+  last_step(int landmark, const Landmark_tree& tree, int sector, const Distances& distances) const
   {
     const std::vector<Halfedge> around = leaving(landmark);
     const std::vector<int> sector_of = sectors(landmark, tree);

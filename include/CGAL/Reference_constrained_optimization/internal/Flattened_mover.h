@@ -7,6 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/mapping_back.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
+#include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
+#include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
 
 #include <chrono>
 #include <cmath>
@@ -15,11 +17,6 @@
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
-
-inline double seconds_since(const std::chrono::steady_clock::time_point& start)
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // A mover proposes new positions of a patch's free vertices. It provides
 //   bool propose(const Patch&, const Density&);
@@ -145,7 +142,7 @@ private:
   const Reference_surface& m_reference;
   Parameters m_parameters;
   Patch_flattener m_flattener;
-  Planar_optimizer m_optimizer;
+  Projected_newton m_optimizer;
   Planar_problem m_problem;
   Flattening m_flattening;
   std::vector<Vector_3> m_points;

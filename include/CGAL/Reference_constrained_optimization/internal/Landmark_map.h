@@ -53,8 +53,8 @@ public:
     if(source_is_closed != reference_is_closed)
       throw Invalid_input(std::string("source and reference: one of them is closed, the other (") +
                           (source_is_closed ? "reference" : "source") + ") has a border");
-    m_area_ratio = surface_area(reference.mesh, reference.points) /
-                   surface_area(source.mesh, source.points);
+    m_area_ratio =
+      surface_area(reference.mesh, reference.points) / surface_area(source.mesh, source.points);
   }
 
   // pairs of vertices, by number
@@ -140,13 +140,11 @@ private:
     int vertices = 0;
     for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
       vertices += copy.mesh.vertex_begin[v] < copy.mesh.vertex_begin[v + 1];
-    const int characteristic =
-      vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces());
+    const int characteristic = vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces());
     if(borders.size() > 1 || characteristic != 2 - int(borders.size()))
-      throw Invalid_input(
-        name + ": has " + std::to_string(borders.size()) + " borders and genus " +
-        std::to_string((2 - characteristic - int(borders.size())) / 2) +
-        ", but must be a closed surface of genus 0 or a disk");
+      throw Invalid_input(name + ": has " + std::to_string(borders.size()) + " borders and genus " +
+                          std::to_string((2 - characteristic - int(borders.size())) / 2) +
+                          ", but must be a closed surface of genus 0 or a disk");
     return borders.empty();
   }
 
@@ -159,8 +157,7 @@ private:
       const Cut_surface::Distances a = m_source.distances(int(i));
       const Cut_surface::Distances b = m_reference.distances(int(i));
       for(std::size_t j = 0; j < n; ++j)
-        m_distance[i][j] =
-          a.length[m_source.landmarks()[j]] + b.length[m_reference.landmarks()[j]];
+        m_distance[i][j] = a.length[m_source.landmarks()[j]] + b.length[m_reference.landmarks()[j]];
     }
   }
 
@@ -254,11 +251,8 @@ private:
 
   // Lays corresponding paths: of all gaps between the paths at both ends, those are taken in which
   // the paths on the two surfaces are shortest together.
-  static bool lay_path(int from,
-                       int to,
-                       Landmark_tree& tree,
-                       Cut_surface& source,
-                       Cut_surface& reference)
+  static bool
+  lay_path(int from, int to, Landmark_tree& tree, Cut_surface& source, Cut_surface& reference)
   {
     double least = std::numeric_limits<double>::infinity();
     int best_from = 0, best_to = 0;

@@ -20,8 +20,9 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 30;
-  double drift_bound = -1;          // a length; negative: 1.2 mean edge lengths of the coarser mesh
-  double energy_tolerance = 1e-3;   // relative decrease of the capped energy per iteration
+  double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
+  // decrease per iteration, relative to what the energy has above that of elements at rest
+  double energy_tolerance = 5e-3;
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
@@ -30,6 +31,9 @@ struct Loop_parameters
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
+  bool use_on_surface_steps = true;
+  int flattened_iterations = 1;    // after them, patches without trouble stay on the surface
+  int on_surface_newton_steps = 2; // per proposal
 };
 
 // Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,

@@ -36,6 +36,7 @@ public:
   {
     double worst;    // no step may take an element beyond it, or further beyond
     double bad;      // elements beyond it are allowed more drift
+    double troubled; // patches with an element beyond it are flattened
     double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
     double drift; // no step may take a vertex of R further than this from the mesh, or further yet
   };
@@ -264,7 +265,7 @@ private:
         cut(patch, v, attempt < 3 ? 0.4 : 0.);
   }
 
-  Limits m_limits{0, 0, 1, 0};
+  Limits m_limits{0, 0, 0, 1, 0};
   std::vector<Patch::Guest> m_guests;
   bool m_exceeds = false;
   std::vector<double> m_step;

@@ -64,10 +64,10 @@ public:
     // the mean of the better half at most
     const double typical = lower_half_mean(m_state, m_density);
     m_cap = 10 * typical;
-    m_rest_energy =
-      double(m_state.elements.size()) * m_density.value(Eigen::Matrix2d::Identity());
+    m_rest_energy = double(m_state.elements.size()) * m_density.value(Eigen::Matrix2d::Identity());
     m_limits.worst = before.worst;
     m_limits.bad = 1.5 * typical;
+    m_limits.troubled = 2 * m_limits.bad;
     m_limits.sharpest = before.sharpest;
     before = measure(m_state, m_density, m_cap);
 
@@ -99,6 +99,8 @@ private:
     {
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
+      m_may_stay_on_surface =
+        m_parameters.use_on_surface_steps && int(i) >= m_parameters.flattened_iterations;
       ++m_result.number_of_iterations;
       const bool complete = visit(m_is_active, m_selection);
       const Global_measure after = measure(m_state, m_density, m_cap);
@@ -128,7 +130,8 @@ private:
   {
     const double floor = 0.01;
     const double excess = before - m_rest_energy;
-    const double scale = excess > 0 ? (std::max)(excess, floor * std::abs(before)) : std::abs(before);
+    const double scale =
+      excess > 0 ? (std::max)(excess, floor * std::abs(before)) : std::abs(before);
     return before - after > m_parameters.energy_tolerance * scale;
   }
 
@@ -213,7 +216,8 @@ private:
       if(!stops && !(is_sequential ? may_go_on() : has_time()))
         stops = true;
       if(!stops)
-        solver.solve(patches[i], m_state, m_density, m_limits, m_drift_guard, solved[i]);
+        solver.solve(patches[i], m_state, m_density, m_limits, m_drift_guard, m_may_stay_on_surface,
+                     solved[i]);
     });
     for(Solved_patch& s : solved)
       if(!s.patch.faces.empty())
@@ -253,7 +257,7 @@ private:
     m_result.times.flattening += s.flattening_time;
     m_result.times.optimization += s.optimization_time;
     m_result.times.acceptance += s.acceptance_time;
-    if(s.was_tried)
+    if(s.is_flattened)
     {
       m_result.conformal_flattenings += s.path == Flattening_path::conformal;
       m_result.convex_border_flattenings += s.path == Flattening_path::convex_border;
@@ -262,7 +266,7 @@ private:
       m_result.sum_of_flattening_distortion += s.distortion;
     }
     m_result.number_of_accepted_patches += s.decision.accepted;
-    m_result.number_of_flattened_patches += s.decision.accepted;
+    m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
     Patch_report report;
     report.number_of_faces = s.patch.faces.size();
     report.energy_before = s.decision.before.energy;
@@ -288,7 +292,8 @@ private:
   std::vector<char> m_is_active, m_is_untouched; // per face
   std::vector<char> m_moved;                     // per vertex
   Drift_guard m_drift_guard;
-  Acceptance_test::Limits m_limits{0, 0, 1, 0};
+  Acceptance_test::Limits m_limits{0, 0, 0, 1, 0};
+  bool m_may_stay_on_surface = false;
   double m_cap = 0;
   double m_rest_energy = 0;
 };

@@ -226,7 +226,7 @@ private:
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;
   bool m_has_empty_edge = false;
-  Planar_optimizer m_optimizer;
+  Projected_newton m_optimizer;
 };
 
 } // namespace internal

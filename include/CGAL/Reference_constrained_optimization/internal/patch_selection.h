@@ -22,7 +22,7 @@ struct Selection_parameters
 {
   double developability_threshold = 0.25; // epsilon_d
   int maximum_patch_size = 0;             // in faces; 0: chosen by the size of the mesh
-  int exempt_size = 100;                  // the first faces of a patch need not fit the proxy
+  int exempt_size = 70;                   // the first faces of a patch need not fit the proxy
 };
 
 // Normals, areas and centroids of the faces, as the growing needs them.

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/On_surface_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 
@@ -24,6 +25,7 @@ struct Solved_patch
   std::vector<Placed_vertex> placed;
   Flattening_path path = Flattening_path::failed;
   bool was_tried = false; // has free vertices
+  bool is_flattened = false;
   bool overlaps = false;
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
@@ -36,7 +38,8 @@ class Patch_solver
 public:
   Patch_solver(const Optimization_state& state, const Loop_parameters& parameters)
     : m_builder(state.mesh),
-      m_mover(state.reference, parameters.mover),
+      m_flattened_mover(state.reference, parameters.mover),
+      m_on_surface_mover(state.reference, parameters.on_surface_newton_steps),
       m_proposals(parameters.proposals_per_patch),
       m_tolerance(parameters.energy_tolerance)
   {}
@@ -48,31 +51,45 @@ public:
              const Density& density,
              const Acceptance_test::Limits& limits,
              const Drift_guard& drift_guard,
+             bool may_stay_on_surface,
              Solved_patch& s)
   {
-    auto start = std::chrono::steady_clock::now();
+    const auto start = std::chrono::steady_clock::now();
     s.patch = m_builder.build(faces, state);
     s.acceptance_time = seconds_since(start);
     if(s.patch.number_of_free_vertices == 0)
       return;
     s.was_tried = true;
     drift_guard.invite(s.patch);
-    const bool proposes = m_mover.propose(s.patch, density);
-    s.path = m_mover.flattening().path;
-    s.overlaps = m_mover.overlaps();
-    s.distortion = m_mover.flattening().distortion;
-    s.flattening_time = m_mover.flattening_time();
-    s.optimization_time = m_mover.optimization_time();
-    if(!proposes)
-      return;
-    // one flattening serves several proposals: it is the most expensive of the steps
-    for(int pass = 0; pass < m_proposals; ++pass)
+    s.is_flattened = !may_stay_on_surface || is_troubled(s.patch, density, limits);
+    if(s.is_flattened)
     {
-      if(pass > 0 && !m_mover.propose_again(s.patch, m_acceptance.steps(), density))
-        break;
-      start = std::chrono::steady_clock::now();
+      improve(m_flattened_mover, state, density, limits, s);
+      s.path = m_flattened_mover.flattening().path;
+      s.overlaps = m_flattened_mover.overlaps();
+      s.distortion = m_flattened_mover.flattening().distortion;
+      s.flattening_time = m_flattened_mover.flattening_time();
+    }
+    else
+      improve(m_on_surface_mover, state, density, limits, s);
+    s.placed = s.patch.placed;
+  }
+
+private:
+  // what is prepared once serves several proposals
+  template <typename Mover, typename Density>
+  void improve(Mover& mover,
+               const Optimization_state& state,
+               const Density& density,
+               const Acceptance_test::Limits& limits,
+               Solved_patch& s)
+  {
+    bool proposes = mover.propose(s.patch, density);
+    for(int pass = 0; proposes; ++pass)
+    {
+      const auto start = std::chrono::steady_clock::now();
       const Acceptance_test::Decision decision =
-        m_acceptance.decide(s.patch, state, m_mover, density, limits);
+        m_acceptance.decide(s.patch, state, mover, density, limits);
       if(pass == 0)
         s.decision = decision;
       if(decision.accepted)
@@ -83,16 +100,40 @@ public:
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
-      if(!decision.accepted || gain < m_tolerance * decision.before.energy)
-        break;
+      proposes = decision.accepted && gain >= m_tolerance * decision.before.energy &&
+                 pass + 1 < m_proposals &&
+                 mover.propose_again(s.patch, m_acceptance.steps(), density);
     }
-    s.optimization_time = m_mover.optimization_time();
-    s.placed = s.patch.placed;
+    s.optimization_time = mover.optimization_time();
   }
 
-private:
+  // whether there is something in the patch that only a flattening may mend
+  template <typename Density>
+  static bool
+  is_troubled(const Patch& patch, const Density& density, const Acceptance_test::Limits& limits)
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
+    for(const Element_set::Element& e : patch.elements)
+      if(element_energy(density, e, vertex) > limits.troubled)
+        return true;
+    const Indexed_mesh& mesh = patch.polygons;
+    std::vector<Vector_3> normals;
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+    {
+      normals.push_back(face_normal(mesh, vertex, f));
+      if(is_flipped(mesh, vertex, f, normals[f]))
+        return true;
+    }
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(mesh.opposite[c] > c &&
+         is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]))
+        return true;
+    return false;
+  }
+
   Patch_builder m_builder;
-  Flattened_mover m_mover;
+  Flattened_mover m_flattened_mover;
+  On_surface_mover m_on_surface_mover;
   Acceptance_test m_acceptance;
   int m_proposals;
   double m_tolerance;

@@ -68,8 +68,7 @@ public:
   {
     namespace SMP = CGAL::Surface_mesh_parameterization;
     typedef Fixed_border Border;
-    typedef CGAL::Eigen_solver_traits<
-      Eigen::SparseLU<CGAL::Eigen_sparse_matrix<double>::EigenType>>
+    typedef CGAL::Eigen_solver_traits<Eigen::SparseLU<CGAL::Eigen_sparse_matrix<double>::EigenType>>
       Solver;
     m_surface = &surface;
     lay_border(sides, corners);
@@ -94,11 +93,8 @@ private:
               typename UvMap,
               typename IndexMap,
               typename IsParameterizedMap>
-    CGAL::Surface_mesh_parameterization::Error_code parameterize(const Seam_mesh& mesh,
-                                                                 Border_halfedge border,
-                                                                 UvMap uv,
-                                                                 IndexMap,
-                                                                 IsParameterizedMap is_done)
+    CGAL::Surface_mesh_parameterization::Error_code parameterize(
+      const Seam_mesh& mesh, Border_halfedge border, UvMap uv, IndexMap, IsParameterizedMap is_done)
     {
       for(const Border_halfedge h : CGAL::halfedges_around_face(border, mesh))
       {

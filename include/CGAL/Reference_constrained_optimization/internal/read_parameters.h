@@ -51,10 +51,14 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
     checked_positive(choose_parameter(get_parameter(np, CGAL::internal_np::maximum_running_time),
                                       p.maximum_running_time),
                      "maximum_running_time");
-  p.drift_bound = choose_parameter(get_parameter(np, internal_np::drift_bound), p.drift_bound);
-  if(!(p.drift_bound == Loop_parameters().drift_bound || p.drift_bound >= 0))
-    throw Invalid_input("drift_bound must not be negative, but is " +
-                        std::to_string(p.drift_bound));
+  if constexpr(!parameters::is_default_parameter<NamedParameters,
+                                                 internal_np::drift_bound_t>::value)
+  {
+    p.drift_bound = get_parameter(np, internal_np::drift_bound);
+    if(!(p.drift_bound >= 0))
+      throw Invalid_input("drift_bound must not be negative, but is " +
+                          std::to_string(p.drift_bound));
+  }
   p.energy_tolerance =
     choose_parameter(get_parameter(np, internal_np::energy_tolerance), p.energy_tolerance);
   if(!(p.energy_tolerance >= 0))
@@ -62,6 +66,8 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
                         std::to_string(p.energy_tolerance));
   if(!choose_parameter(get_parameter(np, internal_np::use_finishing_stage), true))
     p.maximum_revisits = 0;
+  p.use_on_surface_steps =
+    choose_parameter(get_parameter(np, internal_np::use_on_surface_steps), p.use_on_surface_steps);
   p.selection.developability_threshold =
     checked_positive(choose_parameter(get_parameter(np, internal_np::developability_threshold),
                                       p.selection.developability_threshold),

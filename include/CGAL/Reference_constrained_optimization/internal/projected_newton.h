@@ -1,0 +1,203 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PROJECTED_NEWTON_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PROJECTED_NEWTON_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Newton_system.h>
+#include <CGAL/Reference_constrained_optimization/internal/flip_free_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/projected_derivatives.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Projected Newton descent on a sum of densities over triangles whose shapes are affine in two
+// coordinates per vertex: positive semi-definite element Hessians, no step beyond the collapse of a
+// triangle, Armijo's rule.
+//
+// A problem has `triples` (elements), `rest_inverse`, `is_free` (per vertex), `shape(e, u)`, the edge
+// matrix of element e for coordinates u, and `corner_map(e, i)`, the matrix by which the i-th vertex
+// of element e moves when its coordinates do.
+class Projected_newton
+{
+public:
+  struct Outcome
+  {
+    int steps = 0;
+    double initial_energy = 0, final_energy = 0;
+  };
+
+  // numbers the unknowns of a problem and factorizes its pattern; `minimize` may then be called any
+  // number of times for problems with the same triples and free vertices
+  template <typename Problem>
+  void analyze(const Problem& problem)
+  {
+    m_variable.assign(problem.is_free.size(), -1);
+    m_size = 0;
+    for(std::size_t i = 0; i < problem.is_free.size(); ++i)
+      if(problem.is_free[i])
+        m_variable[i] = m_size++;
+    if(m_size > 0)
+      m_system.analyze(m_variable, m_size, problem.triples);
+    m_right.resize(2 * m_size);
+  }
+
+  // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
+  // energy by less than `tolerance` times it.
+  template <typename Problem, typename Density>
+  Outcome minimize(const Problem& problem,
+                   const Density& density,
+                   std::vector<Vector_2>& u,
+                   int maximum_steps,
+                   double tolerance)
+  {
+    Outcome outcome;
+    if(m_size == 0)
+      return outcome;
+
+    double energy = assemble(problem, density, u);
+    outcome.initial_energy = outcome.final_energy = energy;
+    std::vector<Vector_2> moved(u);
+    for(int step = 0; step < maximum_steps; ++step)
+    {
+      if(!m_system.solve(m_right, m_direction))
+        break;
+      const double decrease = m_right.dot(m_direction);
+      if(!(decrease > tolerance * std::abs(energy)))
+        break;
+
+      double t = (std::min)(1., 0.9 * largest_flip_free_step(problem, u));
+      double trial = 0;
+      bool found = false;
+      for(int halving = 0; halving < 20 && !found; ++halving)
+      {
+        for(std::size_t i = 0; i < u.size(); ++i)
+          if(m_variable[i] >= 0)
+            moved[i] = u[i] + t * m_direction.segment<2>(2 * m_variable[i]);
+        trial = value(problem, density, moved);
+        found = trial <= energy - 1e-4 * t * decrease;
+        if(!found)
+          t *= 0.5;
+      }
+      if(!found)
+        break;
+      const double gained = energy - trial;
+      u = moved;
+      energy = outcome.final_energy = trial;
+      ++outcome.steps;
+      if(step + 1 == maximum_steps || gained < tolerance * std::abs(energy))
+        break;
+      assemble(problem, density, u);
+    }
+    return outcome;
+  }
+
+private:
+  template <typename Problem, typename Density>
+  static double
+  value(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  {
+    double sum = 0;
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+      sum += density.value(problem.shape(e, u) * problem.rest_inverse[e]);
+    return sum;
+  }
+
+  // matrix and right-hand side (the negative gradient) at u; returns the energy
+  template <typename Problem, typename Density>
+  double
+  assemble(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  {
+    m_system.set_zero();
+    m_right.setZero();
+    double sum = 0;
+    Eigen::Vector4d gradient;
+    Eigen::Matrix4d hessian;
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+    {
+      const std::array<int, 3>& t = problem.triples[e];
+      const Eigen::Matrix2d& rest = problem.rest_inverse[e];
+      const Eigen::Matrix2d J = problem.shape(e, u) * rest;
+      const int variable[3] = {m_variable[t[0]], m_variable[t[1]], m_variable[t[2]]};
+      if(variable[0] < 0 && variable[1] < 0 && variable[2] < 0)
+      {
+        sum += density.value(J);
+        continue;
+      }
+      sum += projected_derivatives(density, J, gradient, hessian, 0);
+
+      // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i
+      Vector_2 w[3];
+      w[1] = rest.row(0);
+      w[2] = rest.row(1);
+      w[0] = -w[1] - w[2];
+      const Vector_2 g0 = gradient.head<2>(), g1 = gradient.tail<2>();
+      const Eigen::Matrix2d h00 = hessian.topLeftCorner<2, 2>(),
+                            h01 = hessian.topRightCorner<2, 2>(),
+                            h11 = hessian.bottomRightCorner<2, 2>();
+      const auto block = [&](int i, int j) -> Eigen::Matrix2d {
+        const Eigen::Matrix2d inner = w[i](0) * w[j](0) * h00 + w[i](0) * w[j](1) * h01 +
+                                      w[i](1) * w[j](0) * h01.transpose() + w[i](1) * w[j](1) * h11;
+        return problem.corner_map(e, i).transpose() * inner * problem.corner_map(e, j);
+      };
+      for(int i = 0; i < 3; ++i)
+      {
+        const int a = variable[i], j = (i + 1) % 3, b = variable[j];
+        if(a < 0)
+          continue;
+        m_right.segment<2>(2 * a) -=
+          problem.corner_map(e, i).transpose() * (w[i](0) * g0 + w[i](1) * g1);
+        m_system.add_diagonal(a, block(i, i));
+        if(b >= 0)
+          m_system.add_side(int(e), i, a, b, block(i, j));
+      }
+    }
+    return sum;
+  }
+
+  template <typename Problem>
+  double largest_flip_free_step(const Problem& problem, const std::vector<Vector_2>& u) const
+  {
+    double step = std::numeric_limits<double>::infinity();
+    const auto motion = [&](int v) -> Vector_2 {
+      return m_variable[v] < 0 ? Vector_2(Vector_2::Zero())
+                               : Vector_2(m_direction.segment<2>(2 * m_variable[v]));
+    };
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+    {
+      const Eigen::Matrix2d shape = problem.shape(e, u);
+      if(!(shape.determinant() > 0))
+        continue; // inverted already: the density pushes it back
+      const std::array<int, 3>& t = problem.triples[e];
+      const Vector_2 first = problem.corner_map(e, 0) * motion(t[0]);
+      Eigen::Matrix2d d;
+      d.col(0) = problem.corner_map(e, 1) * motion(t[1]) - first;
+      d.col(1) = problem.corner_map(e, 2) * motion(t[2]) - first;
+      step = (std::min)(step, time_of_collapse(shape, d));
+    }
+    return step;
+  }
+
+  int m_size = 0;
+  Newton_system m_system;
+  std::vector<int> m_variable;
+  Eigen::VectorXd m_right, m_direction;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PROJECTED_NEWTON_H
