@@ -11,7 +11,6 @@
 #include <CGAL/Surface_mesh/IO/PLY.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -32,10 +31,10 @@ class Checker
   // s in the unit cube: position becomes colour, and every other cell is darker
   static CGAL::IO::Color color(const double (&s)[3], bool is_dark)
   {
-    const double shade = is_dark ? 0.4 : 1;
+    const double shade = is_dark ? 0.45 : 1;
     unsigned char rgb[3];
     for(int i = 0; i < 3; ++i)
-      rgb[i] = (unsigned char)(shade * (75 + 180 * s[i]));
+      rgb[i] = (unsigned char)(shade * (60 + 195 * s[i]));
     return CGAL::IO::Color(rgb[0], rgb[1], rgb[2]);
   }
 
@@ -71,8 +70,8 @@ public:
       int cells = 0;
       for(int i = 0; i < 3; ++i)
       {
-        s[i] = (source.point(v)[i] - box.min(i)) / side(i);
         t[i] = (source.point(v)[i] - box.min(i)) / longest;
+        s[i] = side(i) > 0 ? t[i] * longest / side(i) : 0;
         cells += int(number_of_cells * t[i]);
       }
       m_color.push_back(color(s, cells % 2 == 1));
@@ -80,11 +79,9 @@ public:
     }
   }
 
-  // writes <prefix>_checker.mtl and .bmp, to which the .obj files refer
-  void write_texture() const
+  // writes the image <prefix>_checker.bmp, which all .mtl files name
+  void write_image() const
   {
-    open("_checker.mtl") << "newmtl checker\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd "
-                         << file_name("_checker.bmp") << '\n';
     // 512 times 512 pixels of 24 bits, without compression
     const unsigned char header[54] = {'B', 'M', 54, 0, 12, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40,
                                       0,   0,   0,  0, 2,  0, 0, 0, 2, 0, 0,  1, 0, 24};
@@ -100,7 +97,7 @@ public:
       }
   }
 
-  // writes <prefix>_<name>.ply with colours and .obj with texture coordinates
+  // writes <prefix>_<name>.ply with colours, and .obj and .mtl with the texture
   void write_mesh(Mesh mesh, const std::string& name) const
   {
     mesh.remove_all_property_maps(); // colours that came with the input
@@ -111,8 +108,11 @@ public:
     CGAL::IO::set_binary_mode(ply);
     CGAL::IO::write_PLY(ply, mesh);
 
+    // a file for each mesh, because some viewers do not read "mtllib" but guess the name
+    open("_" + name + ".mtl") << "newmtl checker\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nmap_Kd "
+                              << file_name("_checker.bmp") << '\n';
     std::ofstream obj = open("_" + name + ".obj");
-    obj << "mtllib " << file_name("_checker.mtl") << '\n';
+    obj << "mtllib " << file_name("_" + name + ".mtl") << '\n';
     for(const Kernel::Point_3& p : mesh.points())
       obj << "v " << p << '\n';
     for(const auto& t : m_texture)

@@ -15,11 +15,13 @@
 
 #include <CGAL/Polygon_mesh_processing/IO/polygon_mesh_io.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Real_timer.h>
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -61,19 +63,22 @@ Landmarks read_landmarks(const std::string& file, const Mesh& source, const Mesh
 
 Mesh make_initial_mesh(const Mesh& source, const Mesh& reference, const Landmarks& landmarks)
 {
+  CGAL::Real_timer timer;
+  timer.start();
   Mesh mesh;
   const RCO::Initial_mesh_report report =
     RCO::compatible_initial_mesh(source, reference, landmarks, mesh);
   std::cout << landmarks.size() << " landmarks; " << report.number_of_bijective_maps << " of "
-            << report.number_of_trees << " trees gave a bijective map" << std::endl;
+            << report.number_of_trees << " trees gave a bijective map; " << timer.time()
+            << " seconds" << std::endl;
   return mesh;
 }
 
 template <typename T>
 void print(const char* what, T before, T after)
 {
-  std::cout << std::left << std::setw(44) << what << std::right << std::setw(12) << before
-            << std::setw(12) << after << '\n';
+  std::cout << std::left << std::setw(44) << what << std::right << std::setw(14) << before
+            << std::setw(14) << after << '\n';
 }
 
 void print_table(const Mesh& source, const Mesh& reference, const Mesh& before, const Mesh& after)
@@ -95,13 +100,14 @@ void print_table(const Mesh& source, const Mesh& reference, const Mesh& before, 
   print("  maximum", a.maximum, b.maximum);
   print("flipped faces", c.number_of_flips, d.number_of_flips);
   print("folded edges", c.number_of_fold_edges, d.number_of_fold_edges);
-  print("mesh to reference (mean edge lengths)", e.relative_mesh_to_reference(),
+  print("drift, mesh to reference (mean edges)", e.relative_mesh_to_reference(),
         f.relative_mesh_to_reference());
   // how far the ends of the reference stick out of the mesh
-  print("coverage: reference to mesh (the same)", e.relative_reference_to_mesh(),
+  print("coverage, reference to mesh (mean edges)", e.relative_reference_to_mesh(),
         f.relative_reference_to_mesh());
   std::cout << std::scientific << std::setprecision(1);
-  print("vertices to reference (length)", RCO::distance_to_reference(before, reference).maximum,
+  print("furthest vertex from the reference (length)",
+        RCO::distance_to_reference(before, reference).maximum,
         RCO::distance_to_reference(after, reference).maximum);
 }
 
@@ -113,6 +119,7 @@ int main(int argc, char* argv[])
               << "       compatible_remeshing [mesh]" << std::endl;
     return EXIT_FAILURE;
   }
+  std::cout << std::setprecision(3);
   try
   {
     const Mesh source = read_mesh(argc > 1 ? argv[1] : CGAL::data_file_path("meshes/bear_bis.off"));
@@ -131,7 +138,6 @@ int main(int argc, char* argv[])
       else
         initial = read_mesh(start);
     }
-
     std::cout << "source: " << source.number_of_vertices()
               << " vertices; reference: " << reference.number_of_vertices() << " vertices"
               << std::endl;
@@ -140,21 +146,21 @@ int main(int argc, char* argv[])
     const RCO::Result result = CGAL::reference_constrained_optimize(
       mesh, reference, RCO::Compatible_remeshing_energy(source));
     print_table(source, reference, initial, mesh);
-    std::cout << std::defaultfloat << std::setprecision(3) << result.number_of_iterations
-              << " iterations of "
-              << double(result.number_of_patches) / double(result.number_of_iterations)
+    const std::size_t iterations = result.number_of_iterations;
+    std::cout << std::defaultfloat << std::setprecision(3) << iterations << " iterations of "
+              << (iterations > 0 ? double(result.number_of_patches) / double(iterations) : 0)
               << " patches, " << result.running_time << " seconds\n";
 
     const std::string prefix = argc > 4 ? argv[4] : "compatible";
     if(!CGAL::IO::write_OFF(prefix + "_result.off", mesh, CGAL::parameters::stream_precision(17)))
       throw std::runtime_error(prefix + "_result.off cannot be written");
     const Checker checker(source, prefix);
-    checker.write_texture();
+    checker.write_image();
     checker.write_mesh(source, "source");
     checker.write_mesh(initial, "start");
     checker.write_mesh(mesh, "result");
     std::cout << "written: " << prefix << "_result.off, and " << prefix
-              << "_{source,start,result}.{ply,obj} to look at" << std::endl;
+              << "_{source,start,result}.{ply,obj,mtl} to look at" << std::endl;
   }
   catch(const std::exception& e)
   {

@@ -4,6 +4,7 @@
 #ifndef RCO_EXAMPLE_DEFORMED_PAIR_H
 #define RCO_EXAMPLE_DEFORMED_PAIR_H
 
+#include <CGAL/Bbox_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
