@@ -83,8 +83,7 @@ public:
     const auto start = std::chrono::steady_clock::now();
     linearize(patch);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
-    const int steps =
-      m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8).steps;
+    const int steps = m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8).steps;
     m_optimization_time += seconds_since(start);
     return steps > 0;
   }

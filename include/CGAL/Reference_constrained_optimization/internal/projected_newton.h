@@ -117,8 +117,7 @@ private:
 
   // matrix and right-hand side (the negative gradient) at u; returns the energy
   template <typename Problem, typename Density>
-  double
-  assemble(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  double assemble(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
   {
     m_system.set_zero();
     m_right.setZero();
