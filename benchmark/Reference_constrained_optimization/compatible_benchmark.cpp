@@ -98,7 +98,7 @@ Options parse(int argc, char* argv[])
     else if(take_common_option(o, option, value))
       continue;
     else if(option == "--drift-bound")
-      expand(o.runs, &Settings::drift_bound, option, value());
+      expand(o.runs, &Settings::drift_bound, option, value(), true);
     else if(option == "--start")
       o.starts = split_list(value());
     else if(option == "--baseline")

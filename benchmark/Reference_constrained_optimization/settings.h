@@ -67,16 +67,18 @@ template <typename Settings, typename Base, typename T>
 void expand(std::vector<Settings>& runs,
             T Base::*member,
             const std::string& option,
-            const std::string& list)
+            const std::string& list,
+            bool may_be_infinite = false)
 {
   std::vector<Settings> expanded;
   for(const Settings& run : runs)
     for(const std::string& item : split_list(list))
     {
       const double value = to_number(option, item);
-      if(!(value >= double(std::numeric_limits<T>::lowest()) &&
-           value <= double((std::numeric_limits<T>::max)())) ||
-         double(T(value)) != value)
+      const bool is_infinite = may_be_infinite && value == std::numeric_limits<double>::infinity();
+      if(!is_infinite && (!(value >= double(std::numeric_limits<T>::lowest()) &&
+                            value <= double((std::numeric_limits<T>::max)())) ||
+                          double(T(value)) != value))
         throw std::invalid_argument(option + ": '" + item + "' is out of range or not whole");
       expanded.push_back(run);
       expanded.back().*member = T(value);
