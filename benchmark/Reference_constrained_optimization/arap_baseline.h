@@ -2,10 +2,8 @@
 #define RCO_BENCHMARK_ARAP_BASELINE_H
 
 // What compatible meshes are compared with: an as-rigid-as-possible energy of the map plus a soft
-// constraint to the reference, as in
-//   Yang, Zhang, Fu, Liu: Volume-enhanced compatible remeshing of 3D models. IEEE Transactions on
-//   Visualization and Computer Graphics, 2019,
-// as far as the paper of this package describes it. It is no reimplementation of that article.
+// constraint to the reference, as in "Volume-enhanced compatible remeshing" (Yang, Zhang, Fu, Liu),
+// as far as the paper of this package describes that. It is no reimplementation of that article.
 
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
@@ -26,7 +24,7 @@ struct Arap_parameters
 {
   int number_of_iterations = 20;
   // Of the squared distance to the tangent plane of the reference at the closest point, growing
-  // geometrically from iteration to iteration; the stiffness of a vertex is about 3.
+  // geometrically from iteration to iteration; a regular vertex has the stiffness 3.5.
   double first_weight = 10, last_weight = 1000;
   // The same for the distance within the tangent plane: sliding is to be free, but the system
   // definite.
@@ -36,9 +34,10 @@ struct Arap_parameters
   double area_exponent = 0.5;
 };
 
-// Local and global steps in turn. Measured variants that did worse: the distance to the closest
-// point instead of its tangent plane, projection onto the reference at the end only, the closest
-// point on the whole reference instead of the local one.
+// Local and global steps in turn. Of the variants tried, the distance to the closest point instead
+// of its tangent plane left several times as many flips and folds at about the same mean;
+// projection in the end only left slivers; the closest point of the whole reference instead of the
+// local one left a few flips more.
 class Arap_baseline
 {
   typedef CGAL::Reference_constrained_optimization::internal::Mesh_copy Mesh_copy;
