@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <cstddef>
 #include <vector>
 
 struct Arap_parameters
