@@ -1,0 +1,145 @@
+#ifndef RCO_BENCHMARK_REPORT_H
+#define RCO_BENCHMARK_REPORT_H
+
+// The rows that the drivers print, as a table, as CSV and as JSON.
+
+#include <CGAL/Reference_constrained_optimization/Result.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+// A value of a row. The table shows the values of successive fields with the same heading together.
+struct Field
+{
+  std::string key, heading, text;
+  bool is_number;
+  double number = 0;
+};
+
+class Row
+{
+public:
+  void add(const std::string& key, const std::string& heading, const std::string& text)
+  {
+    m_fields.push_back({key, heading, text, false, 0});
+  }
+  void add(const std::string& key, const std::string& heading, double x, int digits = 0)
+  {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, x);
+    m_fields.push_back({key, heading, std::isfinite(x) ? text : "-", true, x});
+  }
+
+  void print_table(std::ostream& out, bool with_heading) const
+  {
+    std::string headings, values;
+    for(std::size_t i = 0; i < m_fields.size();)
+    {
+      const std::string& heading = m_fields[i].heading;
+      std::string value = m_fields[i].text;
+      for(++i; i < m_fields.size() && m_fields[i].heading == heading; ++i)
+        value += "/" + m_fields[i].text;
+      append(headings, values, heading, value);
+    }
+    if(with_heading)
+      out << headings << '\n';
+    out << values << std::endl;
+  }
+
+  void print_csv(std::ostream& out, bool with_heading) const
+  {
+    if(with_heading)
+      for(std::size_t i = 0; i < m_fields.size(); ++i)
+        out << m_fields[i].key << (i + 1 < m_fields.size() ? "," : "\n");
+    for(std::size_t i = 0; i < m_fields.size(); ++i)
+      out << full(m_fields[i], "\"\"", "") << (i + 1 < m_fields.size() ? "," : "");
+    out << std::endl;
+  }
+
+  void print_json(std::ostream& out) const
+  {
+    out << "  {";
+    for(std::size_t i = 0; i < m_fields.size(); ++i)
+      out << (i > 0 ? ", " : "") << '"' << m_fields[i].key
+          << "\": " << full(m_fields[i], "\\\"", "null");
+    out << "}" << std::flush;
+  }
+
+private:
+  // columns start where those of the first row do, as far as the values allow
+  static void append(std::string& headings,
+                     std::string& values,
+                     const std::string& heading,
+                     const std::string& value)
+  {
+    static const std::vector<std::pair<std::string, std::size_t>> widths = {
+      {"mesh", 20},     {"pair", 18}, {"start", 11},      {"method", 6},     {"settings", 10},
+      {"V", 6},         {"F", 6},     {"theta in", 15},   {"theta out", 15}, {"mean", 11},
+      {"median", 6},    {"p99", 6},   {"max", 7},         {"drift", 11},     {"drift in", 9},
+      {"drift out", 9}, {"flips", 7}, {"folds", 7},       {"status", 15},    {"N_out", 5},
+      {"N_in", 6},      {"faces", 6}, {"accepted %", 10}, {"SD", 5},         {"flattening %", 18},
+      {"stages %", 14}, {"s", 7},     {"T_F ms", 7},      {"time/T_F", 8},   {"us/V", 6},
+      {"MB", 5}};
+    std::size_t width = heading.size();
+    for(const auto& w : widths)
+      if(w.first == heading)
+        width = w.second;
+    width = (std::max)(width, heading.size());
+    // numbers to the right; a value that is too long pushes the rest of its row
+    const bool is_left = values.empty() || heading == "status" || heading == "settings" ||
+                         heading == "start" || heading == "method";
+    const auto padded = [&](const std::string& s) {
+      const std::string fill(s.size() < width ? width - s.size() : 0, ' ');
+      return is_left ? s + fill : fill + s;
+    };
+    headings += (headings.empty() ? "" : "  ") + padded(heading);
+    values += (values.empty() ? "" : "  ") + padded(value);
+  }
+
+  // with all digits, for programs
+  static std::string full(const Field& f, const std::string& escaped_quote, const std::string& none)
+  {
+    if(f.is_number)
+    {
+      char text[64];
+      std::snprintf(text, sizeof text, "%.12g", f.number);
+      return std::isfinite(f.number) ? text : none;
+    }
+    std::string quoted = "\"";
+    for(const char c : f.text)
+      if(c == '"')
+        quoted += escaped_quote;
+      else
+        quoted += c;
+    return quoted + "\"";
+  }
+
+  std::vector<Field> m_fields;
+};
+
+// its name in a row
+inline const char* name(CGAL::Reference_constrained_optimization::Status status)
+{
+  switch(status)
+  {
+  case CGAL::Reference_constrained_optimization::Status::converged:
+    return "converged";
+  case CGAL::Reference_constrained_optimization::Status::iteration_limit:
+    return "iteration limit";
+  case CGAL::Reference_constrained_optimization::Status::time_limit:
+    return "time limit";
+  case CGAL::Reference_constrained_optimization::Status::interrupted:
+    return "interrupted";
+  case CGAL::Reference_constrained_optimization::Status::nothing_to_do:
+    return "nothing to do";
+  }
+  return "";
+}
+
+#endif // RCO_BENCHMARK_REPORT_H
