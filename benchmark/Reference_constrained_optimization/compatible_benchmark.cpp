@@ -200,24 +200,26 @@ RCO::Result optimize(Mesh& mesh,
                      Monotonicity_visitor& visitor)
 {
   namespace parameters = CGAL::parameters;
-  const auto np = parameters::developability_threshold(s.developability)
-                    .energy_tolerance(s.tolerance)
-                    .maximum_patch_size(s.patch_size)
-                    .drift_bound(s.drift_bound < 0 ? Common_settings::Defaults().drift_bound
-                                                   : s.drift_bound * edge_length)
-                    .use_on_surface_steps(!o.plain)
-                    .use_finishing_stage(!o.plain)
-                    .number_of_iterations(s.iterations)
-                    .random_seed(s.seed)
-                    .maximum_running_time(s.time_limit)
-                    .visitor(std::ref(visitor));
   const RCO::Compatible_remeshing_energy energy(pair.source);
+  const auto optimize_with = [&](const auto& own) {
+    const auto np = own.energy_tolerance(s.tolerance)
+                      .maximum_patch_size(s.patch_size)
+                      .use_on_surface_steps(!o.plain)
+                      .use_finishing_stage(!o.plain)
+                      .number_of_iterations(s.iterations)
+                      .random_seed(s.seed)
+                      .maximum_running_time(s.time_limit)
+                      .visitor(std::ref(visitor));
 #ifdef CGAL_LINKED_WITH_TBB
-  if(o.parallel)
-    return CGAL::reference_constrained_optimize<CGAL::Parallel_tag>(mesh, pair.reference, energy,
-                                                                    np);
+    if(o.parallel)
+      return CGAL::reference_constrained_optimize<CGAL::Parallel_tag>(mesh, pair.reference, energy,
+                                                                      np);
 #endif
-  return CGAL::reference_constrained_optimize(mesh, pair.reference, energy, np);
+    return CGAL::reference_constrained_optimize(mesh, pair.reference, energy, np);
+  };
+  const auto own = parameters::developability_threshold(s.developability);
+  return s.drift_bound < 0 ? optimize_with(own)
+                           : optimize_with(own.drift_bound(s.drift_bound * edge_length));
 }
 
 // the vertices of every face, starting with the smallest
