@@ -124,7 +124,7 @@ namespace CGAL {
  *                           elements are all at rest, both with single elements capped and
  *                           without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`5e-3`}
+ *     \cgalParamDefault{`3e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch}
