@@ -812,21 +812,101 @@ void test_random_maps()
   }
 }
 
-// a source with faces of no area is mapped all the same
-void test_degenerate_source()
+// the same for squares, with any number of landmarks on the border
+void test_random_disk_maps()
 {
-  Pair pair = sphere_pair(icosphere(3), ellipsoidal, meridian_sphere(36, 20), ellipsoidal, 4);
-  const Indexed_mesh mesh = indexed(pair.source);
-  for(const int v : {100, 250, 400, 600})
-    pair.source.points[v] =
-      pair.source.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
+  Random random(8);
+  const Shape a = square(6, 5), b = square(7, 8);
+  for(int k = 0; k < 30; ++k)
+  {
+    Pair pair{deformed(a, arched), deformed(b, hilly), {}};
+    std::set<int> used[2];
+    const int n = 3 + random.index(6), on_border = random.index(n + 1);
+    while(int(pair.landmarks.size()) < n)
+    {
+      Vector_3 p(random(0.25, 0.75), random(0.25, 0.75), 0);
+      if(int(pair.landmarks.size()) < on_border)
+        p(random.index(2)) = random() < 0.5 ? 0 : 1;
+      const int v = nearest(a, p), w = nearest(b, p);
+      if(used[0].count(v) || used[1].count(w))
+        continue;
+      used[0].insert(v);
+      used[1].insert(w);
+      pair.landmarks.push_back({v, w});
+    }
+    mapped(pair, "coarse squares, random landmarks, " + std::to_string(k), k);
+  }
+}
+
+// meshes with faces of no area are mapped all the same
+void test_degenerate_maps()
+{
+  const auto make_bad = [](Shape& shape, const std::vector<int>& with) {
+    const Indexed_mesh mesh = indexed(shape);
+    for(const int v : with)
+      shape.points[v] = shape.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
+  };
+  for(const bool bad_source : {true, false})
+  {
+    const Scope scope(bad_source ? "degenerate source" : "degenerate reference");
+    Pair pair = sphere_pair(icosphere(3), ellipsoidal, meridian_sphere(36, 20), ellipsoidal, 4);
+    make_bad(bad_source ? pair.source : pair.reference, {100, 250, 400, 600});
+    const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+    Mesh output;
+    const RCO::Initial_mesh_report report =
+      RCO::compatible_initial_mesh(source, reference, descriptors(source, reference, pair), output);
+    RCO_CHECK(report.number_of_bijective_maps > 0);
+    RCO_CHECK(std::isfinite(report.capped_energy));
+    RCO_CHECK(RCO::distance_to_reference(output, reference).is_on_reference());
+    RCO_CHECK(same_connectivity(pair.source, make_shape(output)));
+  }
+}
+
+void test_map_parameters()
+{
+  const Scope scope("parameters of maps");
+  const Pair pair = sphere_pair(icosphere(2), bumpy, meridian_sphere(20, 12), ellipsoidal, 7);
   const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+  const auto landmarks = descriptors(source, reference, pair);
+  double previous = std::numeric_limits<double>::infinity();
+  Shape six;
+  for(const unsigned int n : {1u, 3u, 6u, 12u})
+  {
+    Mesh output;
+    const RCO::Initial_mesh_report report = RCO::compatible_initial_mesh(
+      source, reference, landmarks, output, params::number_of_iterations(n));
+    RCO_CHECK(report.number_of_trees <= n);
+    if(n == 1)
+      RCO_CHECK_EQUAL(report.number_of_trees, std::size_t(1));
+    // the first trees are the same
+    RCO_CHECK_LESS_EQUAL(report.capped_energy, previous);
+    previous = report.capped_energy;
+    if(n == 6)
+      six = make_shape(output);
+  }
   Mesh output;
-  const RCO::Initial_mesh_report report =
-    RCO::compatible_initial_mesh(source, reference, descriptors(source, reference, pair), output);
-  RCO_CHECK(report.number_of_bijective_maps > 0);
-  RCO_CHECK(std::isfinite(report.capped_energy));
-  RCO_CHECK(RCO::distance_to_reference(output, reference).is_on_reference());
+  RCO_CHECK_THROWS(RCO::compatible_initial_mesh(source, reference, landmarks, output,
+                                                params::number_of_iterations(0u)),
+                   RCO::Invalid_input, "at least one tree");
+
+  // points in other maps
+  Mesh moved[2] = {source, reference};
+  Mesh::Property_map<Mesh::Vertex_index, Mesh::Point> maps[3];
+  for(int i = 0; i < 2; ++i)
+  {
+    maps[i] = moved[i].add_property_map<Mesh::Vertex_index, Mesh::Point>("v:other").first;
+    for(const auto v : moved[i].vertices())
+      std::swap(maps[i][v], moved[i].point(v));
+  }
+  maps[2] = output.add_property_map<Mesh::Vertex_index, Mesh::Point>("v:other").first;
+  RCO::compatible_initial_mesh(moved[0], moved[1], landmarks, output,
+                               params::vertex_point_map(maps[0]), params::vertex_point_map(maps[1]),
+                               params::vertex_point_map(maps[2]));
+  for(const auto v : output.vertices())
+  {
+    const Mesh::Point& p = maps[2][v];
+    RCO_CHECK(same_bits(Vector_3(p.x(), p.y(), p.z()), six.points[std::size_t(v)]));
+  }
 }
 
 void test_map_errors()
@@ -1353,7 +1433,9 @@ int main()
   timed("disk maps", test_disk_maps);
   timed("coarse maps", test_coarse_maps);
   timed("random maps", test_random_maps);
-  timed("a degenerate source", test_degenerate_source);
+  timed("random disk maps", test_random_disk_maps);
+  timed("maps of degenerate meshes", test_degenerate_maps);
+  timed("parameters of maps", test_map_parameters);
   timed("errors of maps", test_map_errors);
   timed("on-surface steps", [] {
     test_on_surface_steps("a blob", deformed(icosphere(3), bumpy), bumpy(Vector_3(1, 0, 0)));
