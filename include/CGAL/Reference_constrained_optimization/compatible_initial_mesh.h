@@ -83,6 +83,19 @@ std::vector<int> landmark_positions(const FaceGraph& g,
   return result;
 }
 
+// Surface_mesh::clear() removes property maps, the caller's map of points among them
+template <typename Mesh>
+auto remove_elements(Mesh& mesh, int) -> decltype(mesh.clear_without_removing_property_maps())
+{
+  mesh.clear_without_removing_property_maps();
+}
+
+template <typename Mesh>
+void remove_elements(Mesh& mesh, long)
+{
+  CGAL::clear(mesh);
+}
+
 } // namespace internal
 
 /*!
@@ -227,7 +240,7 @@ compatible_initial_mesh(const SourceMesh& source,
   std::vector<std::vector<std::size_t>> soup_faces(from.mesh.number_of_faces());
   for(int c = 0; c < from.mesh.number_of_corners(); ++c)
     soup_faces[from.mesh.corner_face[c]].push_back(std::size_t(from.mesh.corner_vertex[c]));
-  CGAL::clear(output_mesh);
+  internal::remove_elements(output_mesh, 0);
   CGAL::Polygon_mesh_processing::polygon_soup_to_polygon_mesh(
     soup_points, soup_faces, output_mesh, CGAL::parameters::default_values(),
     CGAL::parameters::vertex_point_map(vpm));

@@ -1,0 +1,1449 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Compatible remeshing: the energy, initial meshes from landmarks, and the optimization from them.
+
+#include "test_meshes.h"
+
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
+#include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/distance_to_reference.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/distortion.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polyhedron_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <chrono>
+#include <cstring>
+#include <limits>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+namespace params = CGAL::parameters;
+using namespace rco_test;
+
+typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
+typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
+typedef CGAL::Polyhedron_3<Epick> Polyhedron;
+typedef RCO::Compatible_remeshing_energy Energy;
+
+// ---------------------------------------------------------------------------------- shapes
+
+typedef std::function<Vector_3(const Vector_3&)> Deformation;
+
+Shape deformed(Shape s, const Deformation& f)
+{
+  for(Vector_3& p : s.points)
+    p = f(p);
+  return s;
+}
+
+Shape reversed(Shape s)
+{
+  for(std::vector<int>& f : s.faces)
+    std::reverse(f.begin(), f.end());
+  return s;
+}
+
+// the unit sphere with meridians
+Shape meridian_sphere(int columns, int rows)
+{
+  const auto angle = [=](double t) { return pi * (1 + t * (rows - 2)) / rows; };
+  Shape s = revolved(
+    columns, rows - 2, [=](double t) { return std::sin(angle(t)); },
+    [=](double t) { return -std::cos(angle(t)); });
+  const int bottom = s.add(0, 0, -1), top = s.add(0, 0, 1);
+  for(int i = 0; i < columns; ++i)
+  {
+    const int j = (i + 1) % columns, last = (rows - 2) * columns;
+    s.triangle(j, i, bottom);
+    s.triangle(last + i, last + j, top);
+  }
+  return s;
+}
+
+// of the unit sphere
+Vector_3 bumpy(const Vector_3& p)
+{
+  return p * (1 + 0.2 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * std::sin(5 * p.z()) +
+              0.1 * std::cos(4 * p.y() - 2 * p.x()));
+}
+Vector_3 ellipsoidal(const Vector_3& p) { return Vector_3(1.5 * p.x(), 0.8 * p.y(), p.z()); }
+Vector_3 twisted(const Vector_3& p)
+{
+  const double a = 0.7 * p.x(), c = std::cos(a), s = std::sin(a);
+  return Vector_3(p.x(), c * p.y() - s * p.z(), s * p.y() + c * p.z());
+}
+Vector_3 bent(const Vector_3& p)
+{
+  const double r = 1.6, a = p.x() / r;
+  return Vector_3((r + p.z()) * std::sin(a), p.y(), (r + p.z()) * std::cos(a) - r);
+}
+// of the unit square
+Vector_3 hilly(const Vector_3& p)
+{
+  const Vector_3 d = p - Vector_3(0.6, 0.45, 0);
+  return Vector_3(p.x(), p.y(), 0.35 * std::exp(-8 * d.squaredNorm()) + 0.1 * p.x() * p.x());
+}
+Vector_3 arched(const Vector_3& p)
+{
+  return Vector_3(1.2 * p.x(), p.y() + 0.1 * p.x(), 0.3 * std::sin(pi * p.x()) * (0.6 + p.y()));
+}
+
+// the unit square, `columns` and `rows` wide
+Shape square(int columns, int rows, bool quads = false)
+{
+  return deformed(plane_grid(columns, rows, 1, quads), [=](const Vector_3& p) -> Vector_3 {
+    return Vector_3(p.x(), p.y() * columns / rows, 0);
+  });
+}
+
+Shape octahedron()
+{
+  Shape s;
+  for(int i = 0; i < 3; ++i)
+    for(const double x : {1., -1.})
+      s.add(i == 0 ? x : 0, i == 1 ? x : 0, i == 2 ? x : 0);
+  for(const int x : {0, 1})
+    for(const int y : {2, 3})
+      for(const int z : {4, 5})
+        (x + y + z) % 2 == 0 ? s.triangle(x, y, z) : s.triangle(x, z, y);
+  return s;
+}
+
+internal::Mesh_copy copy_of(const Shape& s) { return internal::Mesh_copy{indexed(s), s.points}; }
+
+int nearest(const Shape& s, const Vector_3& p)
+{
+  int best = 0;
+  for(int v = 0; v < int(s.points.size()); ++v)
+    if((s.points[v] - p).norm() < (s.points[best] - p).norm())
+      best = v;
+  return best;
+}
+
+// ------------------------------------------------------------------- measures, made anew here
+
+Eigen::Matrix2d gram(const Shape& s, const std::vector<int>& t)
+{
+  const Vector_3 a = s.points[t[1]] - s.points[t[0]], b = s.points[t[2]] - s.points[t[0]];
+  Eigen::Matrix2d g;
+  g << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
+  return g;
+}
+
+// the density of one triangle, the source scaled; infinite for a mesh's triangle without area
+double dirichlet(const Shape& source, const Shape& mesh, const std::vector<int>& t, double scale)
+{
+  const Eigen::Matrix2d q = scale * scale * gram(source, t), m = gram(mesh, t);
+  if(!(m.determinant() > 0))
+    return std::numeric_limits<double>::infinity();
+  return (q.inverse() * m).trace() + (m.inverse() * q).trace();
+}
+
+double mean_dirichlet(const Shape& source, const Shape& mesh, double scale)
+{
+  double sum = 0;
+  for(const std::vector<int>& t : source.faces)
+    sum += dirichlet(source, mesh, t, scale);
+  return sum / double(source.faces.size());
+}
+
+// triangles that are turned over or worse than the cap count as the cap
+double capped_energy(const Shape& source,
+                     const Shape& mesh,
+                     const internal::Reference_surface& surface,
+                     double cap)
+{
+  const double scale = std::sqrt(surface.area() / area(source));
+  double sum = 0;
+  for(const std::vector<int>& t : source.faces)
+  {
+    Vector_3 up = Vector_3::Zero();
+    for(const int v : t)
+      up += surface.normal(surface.closest(mesh.points[v]));
+    const Vector_3 n =
+      (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+    sum += n.dot(up) > 0 ? (std::min)(cap, dirichlet(source, mesh, t, scale)) : cap;
+  }
+  return sum / double(source.faces.size());
+}
+
+double volume(const Shape& s)
+{
+  double sum = 0;
+  for(const std::vector<int>& t : s.faces)
+    sum += s.points[t[0]].dot(s.points[t[1]].cross(s.points[t[2]])) / 6;
+  return sum;
+}
+
+bool same_bits(const Vector_3& a, const Vector_3& b)
+{
+  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
+}
+
+bool same_bits(const Shape& a, const Shape& b)
+{
+  if(a.points.size() != b.points.size() || a.faces != b.faces)
+    return false;
+  for(std::size_t i = 0; i < a.points.size(); ++i)
+    if(!same_bits(a.points[i], b.points[i]))
+      return false;
+  return true;
+}
+
+// the same faces in the same order; each may start at another of its vertices
+bool same_connectivity(const Shape& a, const Shape& b)
+{
+  if(a.points.size() != b.points.size() || a.faces.size() != b.faces.size())
+    return false;
+  for(std::size_t f = 0; f < a.faces.size(); ++f)
+  {
+    std::vector<int> face = b.faces[f];
+    const auto first = std::find(face.begin(), face.end(), a.faces[f].front());
+    std::rotate(face.begin(), first, face.end());
+    if(face != a.faces[f])
+      return false;
+  }
+  return true;
+}
+
+// -------------------------------------------------------------------- meshes on their surface
+
+// Vertices wander on a surface in small random steps; a step that would turn a face over or fold an
+// edge is not made. `mean_way` is how far they came, in their edge lengths.
+Shape wandered(const Shape& shape,
+               const internal::Reference_surface& surface,
+               int number_of_steps,
+               double step,
+               std::uint64_t seed,
+               double& mean_way)
+{
+  const Indexed_mesh mesh = indexed(shape);
+  const int n = mesh.number_of_vertices();
+  Shape result = shape;
+  std::vector<internal::Surface_point> place;
+  std::vector<Vector_3> normals;
+  std::vector<double> length(n, 0);
+  for(int v = 0; v < n; ++v)
+  {
+    place.push_back(surface.closest(shape.points[v]));
+    normals.push_back(surface.normal(place.back()));
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      length[v] += (shape.points[mesh.target(mesh.vertex_corners[k])] - shape.points[v]).norm() /
+                   (mesh.vertex_begin[v + 1] - mesh.vertex_begin[v]);
+  }
+  const auto normal = [&](int f) {
+    const std::vector<int>& t = shape.faces[f];
+    return Vector_3(
+      (result.points[t[1]] - result.points[t[0]]).cross(result.points[t[2]] - result.points[t[0]]));
+  };
+  const auto is_well = [&](int v) {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int f = mesh.corner_face[mesh.vertex_corners[k]];
+      const std::vector<int>& t = shape.faces[f];
+      const Vector_3 a = normal(f);
+      if(!(a.dot(normals[t[0]] + normals[t[1]] + normals[t[2]]) > 0))
+        return false;
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        if(mesh.opposite[c] >= 0)
+        {
+          const Vector_3 b = normal(mesh.corner_face[mesh.opposite[c]]);
+          if(a.dot(b) < -0.5 * a.norm() * b.norm())
+            return false;
+        }
+    }
+    return true;
+  };
+  Random random(seed);
+  for(int i = 0; i < number_of_steps; ++i)
+    for(int v = 0; v < n; ++v)
+    {
+      const Vector_3 move = random.in_cube(step * length[v]);
+      if(mesh.is_border_vertex[v])
+        continue;
+      const internal::Surface_point old_place = place[v];
+      const Vector_3 old_point = result.points[v], old_normal = normals[v];
+      place[v] = surface.descend(old_point + move, old_place.face);
+      result.points[v] = place[v].position;
+      normals[v] = surface.normal(place[v]);
+      if(!is_well(v))
+      {
+        place[v] = old_place;
+        result.points[v] = old_point;
+        normals[v] = old_normal;
+      }
+    }
+  mean_way = 0;
+  for(int v = 0; v < n; ++v)
+    mean_way += (result.points[v] - shape.points[v]).norm() / length[v] / n;
+  return result;
+}
+
+// tests every patch it is told of
+struct Recorder : RCO::Default_visitor
+{
+  std::size_t accepted = 0;
+
+  void on_patch_end(const RCO::Patch_report& r)
+  {
+    accepted += r.accepted;
+    if(r.accepted)
+      RCO_CHECK(r.defects_after < r.defects_before ||
+                (r.defects_after == r.defects_before && r.energy_after < r.energy_before));
+  }
+};
+
+struct Outcome
+{
+  RCO::Result result;
+  Shape before, after;
+  RCO::Distortion_statistics distortion; // at the end, the source scaled to the reference's area
+};
+
+// the optimization, with all that must hold whatever the meshes; triangles only
+Outcome
+optimized(const Shape& source, const Shape& start, const Shape& reference, bool on_surface = true)
+{
+  Outcome out;
+  out.before = start;
+  Mesh mesh = make_mesh<Mesh>(start);
+  const Mesh q = make_mesh<Mesh>(source), r = make_mesh<Mesh>(reference);
+  const Energy energy(q);
+  const RCO::Orientation_defects defects = RCO::orientation_defects(mesh, r);
+  Recorder recorder;
+  out.result = CGAL::reference_constrained_optimize(
+    mesh, r, energy, params::use_on_surface_steps(on_surface).visitor(std::ref(recorder)));
+  out.after = make_shape(mesh);
+  out.distortion = RCO::distortion_statistics(q, mesh, params::default_values(),
+                                              params::default_values(), area(reference));
+
+  RCO_CHECK(same_connectivity(start, out.after));
+  const Indexed_mesh indices = indexed(start);
+  std::size_t number_of_free = 0;
+  for(std::size_t v = 0; v < start.points.size(); ++v)
+    if(indices.is_border_vertex[v])
+      RCO_CHECK(same_bits(start.points[v], out.after.points[v]));
+    else
+      number_of_free += indices.vertex_begin[v] < indices.vertex_begin[v + 1];
+  RCO_CHECK_EQUAL(out.result.number_of_free_vertices, number_of_free);
+  const RCO::Distance_to_reference distance = RCO::distance_to_reference(
+    mesh, r, params::default_values(), params::default_values(),
+    [&](Mesh::Vertex_index v) { return !indices.is_border_vertex[std::size_t(v)]; });
+  RCO_CHECK(distance.is_on_reference());
+
+  const RCO::Result& result = out.result;
+  RCO_CHECK_EQUAL(result.initial_number_of_flips, defects.number_of_flips);
+  RCO_CHECK_EQUAL(result.initial_number_of_fold_edges, defects.number_of_fold_edges);
+  const RCO::Orientation_defects after = RCO::orientation_defects(mesh, r);
+  RCO_CHECK_EQUAL(result.number_of_flips, after.number_of_flips);
+  RCO_CHECK_EQUAL(result.number_of_fold_edges, after.number_of_fold_edges);
+  RCO_CHECK_LESS_EQUAL(after.total(), defects.total());
+  RCO_CHECK(std::isfinite(result.initial_energy) && std::isfinite(result.final_energy));
+  RCO_CHECK_EQUAL(result.number_of_accepted_patches, recorder.accepted);
+  if(after.total() == defects.total())
+    RCO_CHECK_LESS_EQUAL(result.final_energy, result.initial_energy);
+  // no stretch is beyond the density's cap
+  if(after.number_of_flips == 0 && out.distortion.maximum < 1000)
+    RCO_CHECK_NEAR(result.final_energy, 2 * out.distortion.mean, 1e-9 * result.final_energy);
+  return out;
+}
+
+// --------------------------------------------------------------------------------- the energy
+
+template <typename Source, typename NamedParameters = params::Default_named_parameters>
+RCO::Result start_of(Mesh mesh,
+                     const Mesh& reference,
+                     const Source& source,
+                     const NamedParameters& np = params::default_values())
+{
+  return CGAL::reference_constrained_optimize(mesh, reference, Energy(source, np),
+                                              params::number_of_iterations(0u));
+}
+
+void test_energy()
+{
+  const Scope scope("the energy");
+  const Shape shape = deformed(icosphere(2), bumpy), source = deformed(icosphere(2), ellipsoidal);
+  const Mesh mesh = make_mesh<Mesh>(shape), q = make_mesh<Mesh>(source);
+  const Shape fine = deformed(icosphere(4), bumpy); // mesh and reference differ in area
+  const Mesh reference = make_mesh<Mesh>(fine);
+  RCO_CHECK_LESS(area(shape), 0.995 * area(fine));
+  const RCO::Result result = start_of(mesh, reference, q);
+  const double energy = result.initial_energy;
+  RCO_CHECK_EQUAL(result.initial_number_of_flips, std::size_t(0));
+  RCO_CHECK_EQUAL(result.final_energy, energy);
+  RCO_CHECK_NEAR(energy,
+                 2 * RCO::distortion_statistics(q, mesh, params::default_values(),
+                                                params::default_values(), area(fine))
+                       .mean,
+                 1e-10 * energy);
+  RCO_CHECK_NEAR(energy, mean_dirichlet(source, shape, std::sqrt(area(fine) / area(source))),
+                 1e-10 * energy);
+  RCO_CHECK_LESS(4.1, energy);
+
+  // size does not count unless it is to
+  Shape large = source;
+  for(Vector_3& p : large.points)
+    p *= 10;
+  const Mesh large_q = make_mesh<Mesh>(large);
+  RCO_CHECK_NEAR(start_of(mesh, reference, large_q).initial_energy, energy, 1e-10 * energy);
+  const auto own_sizes = params::use_equal_areas(false);
+  RCO_CHECK_NEAR(start_of(mesh, reference, q, own_sizes).initial_energy,
+                 mean_dirichlet(source, shape, 1), 1e-10 * energy);
+  RCO_CHECK_NEAR(start_of(mesh, reference, large_q, own_sizes).initial_energy,
+                 mean_dirichlet(large, shape, 1), 1e-9 * mean_dirichlet(large, shape, 1));
+  RCO_CHECK_LESS(10 * energy, start_of(mesh, reference, large_q, own_sizes).initial_energy);
+
+  // other types
+  RCO_CHECK_NEAR(start_of(mesh, reference, make_mesh<Polyhedron>(source)).initial_energy, energy,
+                 1e-10 * energy);
+
+  // faces that start elsewhere, each third in the same way
+  Shape turned = source;
+  for(std::size_t f = 0; f < turned.faces.size(); ++f)
+    std::rotate(turned.faces[f].begin(), turned.faces[f].begin() + f % 3, turned.faces[f].end());
+  const Mesh turned_q = make_mesh<Mesh>(turned);
+  RCO_CHECK(make_shape(turned_q).faces != make_shape(q).faces);
+  RCO_CHECK_NEAR(start_of(mesh, reference, turned_q).initial_energy, energy, 1e-10 * energy);
+}
+
+void test_energy_of_quads()
+{
+  const Scope scope("the energy of quads");
+  Shape source = deformed(square(8, 6, true), arched);
+  const Shape shape = deformed(square(8, 6, true), hilly);
+  const Mesh mesh = make_mesh<Mesh>(shape);
+  double shorter_first = 0;
+  Shape split = source;
+  split.faces.clear();
+  for(const std::vector<int>& f : source.faces)
+  {
+    const bool second = (source.points[f[0]] - source.points[f[2]]).norm() >
+                        (source.points[f[1]] - source.points[f[3]]).norm();
+    shorter_first += !second;
+    split.quad(f[0], f[1], f[2], f[3], second);
+  }
+  RCO_CHECK(shorter_first > 0 && shorter_first < double(source.faces.size()));
+  // quads that start elsewhere, too
+  Shape turned = source;
+  for(std::size_t f = 0; f < turned.faces.size(); ++f)
+    std::rotate(turned.faces[f].begin(), turned.faces[f].begin() + f % 4, turned.faces[f].end());
+  Shape reference = deformed(square(30, 24), hilly);
+  const double expected = mean_dirichlet(split, shape, std::sqrt(area(reference) / area(split)));
+  const Mesh r = make_mesh<Mesh>(reference);
+  Mesh moving = mesh;
+  const RCO::Result result =
+    CGAL::reference_constrained_optimize(moving, r, Energy(make_mesh<Mesh>(source)));
+  // free vertices were moved onto the reference first
+  RCO_CHECK_NEAR(result.initial_energy, expected, 0.02 * expected);
+  RCO_CHECK_LESS(result.final_energy, result.initial_energy);
+  RCO_CHECK_EQUAL(result.number_of_flips, std::size_t(0));
+  Mesh same = mesh;
+  const RCO::Result again = CGAL::reference_constrained_optimize(
+    same, mesh, Energy(make_mesh<Mesh>(turned), params::use_equal_areas(false)),
+    params::number_of_iterations(0u));
+  RCO_CHECK_NEAR(again.initial_energy, mean_dirichlet(split, shape, 1), 1e-9 * expected);
+}
+
+void test_energy_mismatches()
+{
+  const Scope scope("sources that do not match");
+  const Shape shape = deformed(square(6, 5), hilly);
+  const auto refuses = [&](const Shape& source, const std::string& text) {
+    const Scope s(text);
+    Mesh mesh = make_mesh<Mesh>(shape);
+    const Shape before = make_shape(mesh);
+    RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(shape),
+                                                          Energy(make_mesh<Mesh>(source))),
+                     RCO::Invalid_input, text);
+    RCO_CHECK(same_bits(before, make_shape(mesh)));
+  };
+  const int n = int(shape.faces.size());
+  {
+    // one square is split along its other diagonal
+    Shape source = shape;
+    const int k = 11;
+    std::vector<int>&a = source.faces[2 * k], &b = source.faces[2 * k + 1];
+    std::set<int> both(a.begin(), a.end());
+    std::vector<int> ends;
+    for(const int v : b)
+      if(!both.count(v))
+        ends.push_back(v);
+    while(std::find(b.begin(), b.end(), a[0]) != b.end())
+      std::rotate(a.begin(), a.begin() + 1, a.end()); // a[0] is not of b, so a[1] and a[2] are
+    const std::vector<int> old = a;
+    a = {old[0], old[1], ends[0]};
+    b = {old[0], ends[0], old[2]};
+    refuses(source, "face " + std::to_string(2 * k) + " has the vertices");
+  }
+  refuses(reversed(shape), "face 0 has the vertices");
+  refuses(without_faces(shape, [=](int f) { return f >= n - 2; }),
+          "face " + std::to_string(n - 2) + " of the mesh has no counterpart");
+  {
+    Shape source = shape;
+    source.add(2, 0, 0);
+    source.add(2, 1, 0);
+    refuses(source, "vertices, the mesh " + std::to_string(shape.points.size()));
+    source.triangle(5, int(shape.points.size()), 6); // behind the last face, along the border
+    const Mesh closed = make_mesh<Mesh>(source);
+    RCO_CHECK_EQUAL(int(faces(closed).size()), n + 1);
+    refuses(source, "face " + std::to_string(n) + " of the source has no counterpart");
+  }
+  {
+    Shape source = shape;
+    const int f = 17;
+    source.points[source.faces[f][0]] =
+      0.5 * (source.points[source.faces[f][1]] + source.points[source.faces[f][2]]);
+    int first = f;
+    for(int g = n - 1; g >= 0; --g)
+      if(gram(source, source.faces[g]).determinant() < 1e-20)
+        first = g;
+    RCO_CHECK_THROWS(Energy(make_mesh<Mesh>(source)), RCO::Invalid_input,
+                     "face " + std::to_string(first) +
+                       " of the source has a triangle without area");
+  }
+}
+
+// --------------------------------------------------------------------------- known optimum
+
+void test_known_optimum(const std::string& name, const Shape& shape, std::uint64_t seed)
+{
+  const Scope scope("back to " + name);
+  double way = 0;
+  const internal::Reference_surface surface(copy_of(shape));
+  const Shape start = wandered(shape, surface, 24, 0.3, seed, way);
+  const Outcome out = optimized(shape, start, shape);
+  RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
+  RCO_CHECK_LESS(0.4, way);
+  RCO_CHECK_LESS(5., out.result.initial_energy);
+  RCO_CHECK_LESS_EQUAL(out.distortion.mean, 2.001);
+  std::cout << name << ", " << shape.points.size() << " vertices, seed " << seed << ": " << way
+            << " edges moved, energy " << out.result.initial_energy << ", mean distortion "
+            << out.distortion.mean << ", largest " << out.distortion.maximum << ", "
+            << out.result.number_of_iterations << " iterations, " << out.result.running_time << " s"
+            << std::endl;
+}
+
+void test_known_optima()
+{
+  for(const int seed : {1, 2, 3})
+    test_known_optimum("a blob", deformed(icosphere(4), bumpy), seed);
+  test_known_optimum(
+    "a twisted ellipsoid",
+    deformed(icosphere(4), [](const Vector_3& p) { return twisted(ellipsoidal(p)); }), 4);
+  test_known_optimum("a bent ellipsoid",
+                     deformed(icosphere(4), [](const Vector_3& p) { return bent(ellipsoidal(p)); }),
+                     5);
+  test_known_optimum("a torus", torus(72, 36), 6);
+  test_known_optimum("a hill", deformed(square(50, 50), hilly), 7);
+}
+
+// ------------------------------------------------------------------------------- initial maps
+
+struct Pair
+{
+  Shape source, reference;
+  std::vector<std::pair<int, int>> landmarks;
+};
+
+template <typename Source>
+std::vector<std::pair<typename boost::graph_traits<Source>::vertex_descriptor, Mesh::Vertex_index>>
+descriptors(const Source& source, const Mesh& reference, const Pair& pair)
+{
+  std::vector<
+    std::pair<typename boost::graph_traits<Source>::vertex_descriptor, Mesh::Vertex_index>>
+    result;
+  for(const auto& l : pair.landmarks)
+    result.push_back({*std::next(vertices(source).begin(), l.first),
+                      *std::next(vertices(reference).begin(), l.second)});
+  return result;
+}
+
+// two spheres of different triangles, and landmarks near given directions
+Pair sphere_pair(const Shape& source,
+                 const Deformation& to_source,
+                 const Shape& reference,
+                 const Deformation& to_reference,
+                 int number_of_landmarks)
+{
+  const std::vector<Vector_3> directions = {Vector_3(1, 0.1, 0.1),     Vector_3(-0.6, 0.7, 0.2),
+                                            Vector_3(-0.5, -0.7, 0.4), Vector_3(0.1, 0.1, -1),
+                                            Vector_3(0.2, 0.2, 1),     Vector_3(0.3, 0.9, -0.3),
+                                            Vector_3(0.3, -0.9, -0.2), Vector_3(-0.9, 0, -0.3)};
+  Pair pair{deformed(source, to_source), deformed(reference, to_reference), {}};
+  for(int i = 0; i < number_of_landmarks; ++i)
+    pair.landmarks.push_back({nearest(source, directions[i].normalized()),
+                              nearest(reference, directions[i].normalized())});
+  return pair;
+}
+
+// two squares, and landmarks near given points
+Pair square_pair(const std::vector<Vector_2>& points)
+{
+  const Shape source = square(20, 18);
+  const Shape reference = deformed(square(25, 31), [](const Vector_3& p) -> Vector_3 {
+    const double b = 0.05 * std::sin(pi * p.x()) * std::sin(pi * p.y());
+    return p + Vector_3(b, -b, 0);
+  });
+  Pair pair{deformed(source, arched), deformed(reference, hilly), {}};
+  for(const Vector_2& p : points)
+    pair.landmarks.push_back(
+      {nearest(source, Vector_3(p.x(), p.y(), 0)), nearest(reference, Vector_3(p.x(), p.y(), 0))});
+  return pair;
+}
+
+double distance_to_border(const Shape& s, const Indexed_mesh& mesh, const Vector_3& p)
+{
+  double least = std::numeric_limits<double>::infinity();
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(mesh.opposite[c] < 0)
+    {
+      const Vector_3 &a = s.points[mesh.source(c)], d = s.points[mesh.target(c)] - a;
+      const double t = (std::min)(1., (std::max)(0., (p - a).dot(d) / d.squaredNorm()));
+      least = (std::min)(least, (a + t * d - p).norm());
+    }
+  return least;
+}
+
+struct Mapped
+{
+  RCO::Initial_mesh_report report;
+  Shape shape;
+};
+
+// the initial mesh, with all that must hold of it
+template <typename Source = Mesh>
+Mapped mapped(const Pair& pair, const std::string& name, unsigned int seed = 0)
+{
+  const Scope scope("the map of " + name);
+  const Source source = make_mesh<Source>(pair.source);
+  const Mesh reference = make_mesh<Mesh>(pair.reference);
+  const Shape source_before = make_shape(source), reference_before = make_shape(reference);
+  Mesh output = make_mesh<Mesh>(tetrahedron()); // goes
+  Mapped m;
+  try
+  {
+    m.report = RCO::compatible_initial_mesh(source, reference, descriptors(source, reference, pair),
+                                            output, params::random_seed(seed));
+  }
+  catch(const RCO::Invalid_input& e)
+  {
+    check(false, "a map is found", e.what(), __FILE__, __LINE__);
+    return m;
+  }
+  m.shape = make_shape(output);
+  RCO_CHECK(same_bits(source_before, make_shape(source)));
+  RCO_CHECK(same_bits(reference_before, make_shape(reference)));
+  RCO_CHECK(same_connectivity(source_before, m.shape));
+  // isolated vertices are not valid to CGAL
+  RCO_CHECK_EQUAL(is_valid_polygon_mesh(output), is_valid_polygon_mesh(source));
+  for(const auto& l : pair.landmarks)
+    RCO_CHECK(same_bits(m.shape.points[l.first], pair.reference.points[l.second]));
+  const Indexed_mesh indices = indexed(pair.source), other = indexed(pair.reference);
+  for(std::size_t v = 0; v < m.shape.points.size(); ++v)
+    if(indices.vertex_begin[v] == indices.vertex_begin[v + 1])
+      RCO_CHECK(same_bits(m.shape.points[v], pair.source.points[v]));
+    else if(indices.is_border_vertex[v])
+      RCO_CHECK_LESS_EQUAL(distance_to_border(pair.reference, other, m.shape.points[v]), 1e-12);
+  RCO_CHECK(RCO::distance_to_reference(output, reference).is_on_reference());
+
+  const RCO::Initial_mesh_report& r = m.report;
+  RCO_CHECK(0 < r.number_of_bijective_maps && r.number_of_bijective_maps <= r.number_of_trees);
+  RCO_CHECK(r.number_of_trees <= 6);
+  // a tree on all landmarks; those on the border are connected anyway
+  std::size_t number_of_edges = 0;
+  for(const auto& l : pair.landmarks)
+    number_of_edges += !indices.is_border_vertex[l.first];
+  const bool is_closed =
+    std::find(indices.opposite.begin(), indices.opposite.end(), -1) == indices.opposite.end();
+  RCO_CHECK_EQUAL(r.landmark_tree.size(), number_of_edges - is_closed);
+  RCO_CHECK(r.capped_energy >= 4 - 1e-9);
+  if(pair.source.faces.front().size() == 3)
+  {
+    const double scale = std::sqrt(area(pair.reference) / area(pair.source));
+    double sum = 0;
+    for(const std::vector<int>& t : pair.source.faces)
+      sum += (std::min)(100., dirichlet(pair.source, m.shape, t, scale));
+    RCO_CHECK_NEAR(r.capped_energy, sum / double(pair.source.faces.size()), 1e-6 * r.capped_energy);
+  }
+  std::cout << "map of " << name << ": " << r.number_of_bijective_maps << " of "
+            << r.number_of_trees << " trees, energy " << r.capped_energy << std::endl;
+  return m;
+}
+
+void test_closed_maps()
+{
+  const Shape from = icosphere(3), to = meridian_sphere(36, 20);
+  for(const int n : {3, 4, 8})
+  {
+    const Scope scope(std::to_string(n) + " landmarks");
+    const auto bend = [](const Vector_3& p) { return bent(ellipsoidal(p)); };
+    Pair pair = sphere_pair(from, bumpy, to, bend, n);
+    const Mapped plain = mapped(pair, "spheres, " + std::to_string(n) + " landmarks");
+    RCO_CHECK(volume(plain.shape) > 0.8 * volume(pair.reference));
+    RCO_CHECK(same_bits(plain.shape, mapped(pair, "the same spheres").shape));
+    RCO_CHECK_LESS(plain.report.capped_energy, 20.);
+    // the reference turned inside out: no other mesh comes of it
+    pair.reference = reversed(pair.reference);
+    const Mapped other = mapped(pair, "spheres of opposite orientations");
+    RCO_CHECK(volume(other.shape) > 0);
+    RCO_CHECK_NEAR(other.report.capped_energy, plain.report.capped_energy,
+                   0.05 * plain.report.capped_energy);
+    // a vertex without faces, in the midst of the others
+    pair.reference = reversed(pair.reference);
+    pair.source.points.insert(pair.source.points.begin() + 3, Vector_3(7, 8, 9));
+    for(std::vector<int>& f : pair.source.faces)
+      for(int& v : f)
+        v += v >= 3;
+    for(auto& l : pair.landmarks)
+      l.first += l.first >= 3;
+    mapped(pair, "spheres, an isolated vertex");
+    mapped<Polyhedron>(sphere_pair(from, bumpy, to, bumpy, n), "spheres of two types", 5);
+  }
+  {
+    const Scope scope("onto itself");
+    Pair pair = sphere_pair(from, bumpy, from, bumpy, 6);
+    const Mapped same = mapped(pair, "a sphere onto itself");
+    RCO_CHECK_NEAR(same.report.capped_energy, 4., 1e-4);
+    double furthest = 0;
+    for(std::size_t v = 0; v < same.shape.points.size(); ++v)
+      furthest = (std::max)(furthest, (same.shape.points[v] - pair.source.points[v]).norm());
+    RCO_CHECK_LESS(furthest, 1e-6);
+  }
+}
+
+void test_disk_maps()
+{
+  const std::vector<Vector_2> corners = {Vector_2(0, 0), Vector_2(1, 0), Vector_2(1, 1),
+                                         Vector_2(0, 1)};
+  const std::vector<Vector_2> inner = {Vector_2(0.3, 0.3), Vector_2(0.7, 0.4), Vector_2(0.5, 0.75)};
+  std::vector<Vector_2> points = corners;
+  const Mapped plain = mapped(square_pair(points), "squares by their corners");
+  RCO_CHECK_LESS(plain.report.capped_energy, 6.);
+  points.insert(points.end(), inner.begin(), inner.end());
+  mapped(square_pair(points), "squares by corners and inner vertices");
+  points = inner;
+  points.insert(points.begin() + 1, corners[0]);
+  mapped(square_pair(points), "squares by one corner and inner vertices");
+  points.push_back(Vector_2(1, 0.6));
+  mapped(square_pair(points), "squares by two vertices of the border and inner ones");
+  mapped(square_pair(inner), "squares by inner vertices");
+
+  Pair pair = square_pair(corners);
+  pair.source = deformed(square(20, 18, true), arched); // same vertices
+  mapped(pair, "a square of quads");
+  pair = square_pair(corners);
+  pair.reference = pair.source;
+  for(auto& l : pair.landmarks)
+    l.second = l.first;
+  RCO_CHECK_NEAR(mapped(pair, "a square onto itself").report.capped_energy, 4., 1e-4);
+}
+
+// meshes on which paths have no room
+void test_coarse_maps()
+{
+  const Shape small[] = {tetrahedron(), octahedron(), icosphere(0)};
+  for(const Shape& a : small)
+    for(const bool all : {false, true})
+    {
+      const Scope scope(std::to_string(a.points.size()) + (all ? " landmarks" : " vertices"));
+      Pair pair{a, a, {}};
+      const int n = all ? int(a.points.size()) : 3;
+      for(int i = 0; i < n; ++i)
+      {
+        // the three of the first face, which are neighbours
+        const int v = all ? i : a.faces[0][i];
+        pair.landmarks.push_back({v, v});
+      }
+      const Mapped m = mapped(pair, "a coarse mesh onto itself");
+      RCO_CHECK_NEAR(m.report.capped_energy, 4., 1e-4);
+      pair.reference = deformed(a, [](const Vector_3& p) { return bent(ellipsoidal(p)); });
+      mapped(pair, "a coarse mesh onto a bent one");
+    }
+  // neighbours on a coarse mesh that are far apart on the other, and the other way round
+  const Shape coarse = octahedron(), fine = icosphere(3);
+  Pair pair{coarse, fine, {}};
+  for(int v = 0; v < 6; ++v)
+    pair.landmarks.push_back({v, nearest(fine, coarse.points[v])});
+  mapped(pair, "an octahedron onto a sphere");
+  std::swap(pair.source, pair.reference);
+  for(auto& l : pair.landmarks)
+    std::swap(l.first, l.second);
+  mapped(pair, "a sphere onto an octahedron");
+
+  // a square of two triangles, and one whose vertices are all on the border
+  Pair disk{square(1, 1), deformed(square(7, 5), hilly), {{0, 0}, {1, 7}, {3, 47}, {2, 40}}};
+  mapped(disk, "two triangles onto a square");
+  disk.source = square(5, 1);
+  disk.landmarks = {{0, 0}, {5, 7}, {11, 47}, {6, 40}};
+  mapped(disk, "a strip onto a square");
+}
+
+// random landmarks, few vertices
+void test_random_maps()
+{
+  Random random(7);
+  const Shape coarse = icosphere(1), other = meridian_sphere(9, 7);
+  for(int k = 0; k < 30; ++k)
+  {
+    const bool swap = k % 2 == 1;
+    const Shape &from = swap ? other : coarse, &to = swap ? coarse : other;
+    Pair pair{deformed(from, bumpy), deformed(to, ellipsoidal), {}};
+    std::set<int> used[2];
+    const int n = 3 + random.index(8);
+    while(int(pair.landmarks.size()) < n)
+    {
+      const Vector_3 p = random.in_cube(1);
+      const int a = nearest(from, p), b = nearest(to, p);
+      if(used[0].count(a) || used[1].count(b))
+        continue;
+      used[0].insert(a);
+      used[1].insert(b);
+      pair.landmarks.push_back({a, b});
+    }
+    mapped(pair, "coarse spheres, random landmarks, " + std::to_string(k), k);
+  }
+}
+
+// the same for squares, with any number of landmarks on the border
+void test_random_disk_maps()
+{
+  Random random(8);
+  const Shape a = square(6, 5), b = square(7, 8);
+  for(int k = 0; k < 30; ++k)
+  {
+    Pair pair{deformed(a, arched), deformed(b, hilly), {}};
+    std::set<int> used[2];
+    const int n = 3 + random.index(6), on_border = random.index(n + 1);
+    while(int(pair.landmarks.size()) < n)
+    {
+      Vector_3 p(random(0.25, 0.75), random(0.25, 0.75), 0);
+      if(int(pair.landmarks.size()) < on_border)
+        p(random.index(2)) = random() < 0.5 ? 0 : 1;
+      const int v = nearest(a, p), w = nearest(b, p);
+      if(used[0].count(v) || used[1].count(w))
+        continue;
+      used[0].insert(v);
+      used[1].insert(w);
+      pair.landmarks.push_back({v, w});
+    }
+    mapped(pair, "coarse squares, random landmarks, " + std::to_string(k), k);
+  }
+}
+
+// meshes with faces of no area are mapped all the same
+void test_degenerate_maps()
+{
+  const auto make_bad = [](Shape& shape, const std::vector<int>& with) {
+    const Indexed_mesh mesh = indexed(shape);
+    for(const int v : with)
+      shape.points[v] = shape.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
+  };
+  for(const bool bad_source : {true, false})
+  {
+    const Scope scope(bad_source ? "degenerate source" : "degenerate reference");
+    Pair pair = sphere_pair(icosphere(3), ellipsoidal, meridian_sphere(36, 20), ellipsoidal, 4);
+    make_bad(bad_source ? pair.source : pair.reference, {100, 250, 400, 600});
+    const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+    Mesh output;
+    const RCO::Initial_mesh_report report =
+      RCO::compatible_initial_mesh(source, reference, descriptors(source, reference, pair), output);
+    RCO_CHECK(report.number_of_bijective_maps > 0);
+    RCO_CHECK(std::isfinite(report.capped_energy));
+    RCO_CHECK(RCO::distance_to_reference(output, reference).is_on_reference());
+    RCO_CHECK(same_connectivity(pair.source, make_shape(output)));
+  }
+}
+
+void test_map_parameters()
+{
+  const Scope scope("parameters of maps");
+  const Pair pair = sphere_pair(icosphere(2), bumpy, meridian_sphere(20, 12), ellipsoidal, 7);
+  const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+  const auto landmarks = descriptors(source, reference, pair);
+  double previous = std::numeric_limits<double>::infinity();
+  Shape six;
+  for(const unsigned int n : {1u, 3u, 6u, 12u})
+  {
+    Mesh output;
+    const RCO::Initial_mesh_report report = RCO::compatible_initial_mesh(
+      source, reference, landmarks, output, params::number_of_iterations(n));
+    RCO_CHECK(report.number_of_trees <= n);
+    if(n == 1)
+      RCO_CHECK_EQUAL(report.number_of_trees, std::size_t(1));
+    // the first trees are the same
+    RCO_CHECK_LESS_EQUAL(report.capped_energy, previous);
+    previous = report.capped_energy;
+    if(n == 6)
+      six = make_shape(output);
+  }
+  Mesh output;
+  RCO_CHECK_THROWS(RCO::compatible_initial_mesh(source, reference, landmarks, output,
+                                                params::number_of_iterations(0u)),
+                   RCO::Invalid_input, "at least one tree");
+
+  // points in other maps
+  Mesh moved[2] = {source, reference};
+  Mesh::Property_map<Mesh::Vertex_index, Mesh::Point> maps[3];
+  for(int i = 0; i < 2; ++i)
+  {
+    maps[i] = moved[i].add_property_map<Mesh::Vertex_index, Mesh::Point>("v:other").first;
+    for(const auto v : moved[i].vertices())
+      std::swap(maps[i][v], moved[i].point(v));
+  }
+  maps[2] = output.add_property_map<Mesh::Vertex_index, Mesh::Point>("v:other").first;
+  RCO::compatible_initial_mesh(moved[0], moved[1], landmarks, output,
+                               params::vertex_point_map(maps[0]), params::vertex_point_map(maps[1]),
+                               params::vertex_point_map(maps[2]));
+  for(const auto v : output.vertices())
+  {
+    const Mesh::Point& p = maps[2][v];
+    RCO_CHECK(same_bits(Vector_3(p.x(), p.y(), p.z()), six.points[std::size_t(v)]));
+  }
+}
+
+void test_map_errors()
+{
+  const Scope scope("landmarks that cannot be used");
+  const auto refuses = [](const Pair& pair, const std::string& text,
+                          std::pair<int, int> stranger = {-1, -1}) {
+    const Scope s(text);
+    const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+    auto landmarks = descriptors(source, reference, pair);
+    if(stranger.first >= 0)
+      landmarks[1] = {Mesh::Vertex_index(stranger.first), Mesh::Vertex_index(stranger.second)};
+    Mesh output = make_mesh<Mesh>(octahedron());
+    const Shape before = make_shape(output);
+    RCO_CHECK_THROWS(RCO::compatible_initial_mesh(source, reference, landmarks, output),
+                     RCO::Invalid_input, text);
+    RCO_CHECK(same_bits(before, make_shape(output)));
+  };
+  const Shape ball = icosphere(1), other = meridian_sphere(8, 6);
+  const Pair good = sphere_pair(ball, bumpy, other, ellipsoidal, 5);
+  Pair pair = good;
+  pair.landmarks.resize(2);
+  refuses(pair, "at least three");
+  pair.landmarks.clear();
+  refuses(pair, "at least three");
+  pair = good;
+  pair.landmarks[3].first = pair.landmarks[1].first;
+  refuses(pair, "of the source is in two pairs, 1 and 3");
+  pair = good;
+  pair.landmarks[4].second = pair.landmarks[0].second;
+  refuses(pair, "of the reference is in two pairs, 0 and 4");
+  refuses(good, "pair 1 names a vertex that the source", {1000, 3});
+  refuses(good, "pair 1 names a vertex that the reference", {3, 1000});
+  refuses(good, "pair 1 names a vertex that the source",
+          {int(std::uint32_t(Mesh::null_vertex()) & 0x7fffffffu), 3});
+  pair = good;
+  pair.source.add(0, 0, 0);
+  pair.landmarks[2].first = int(ball.points.size());
+  refuses(pair, "(pair 2) has no face");
+  pair = good;
+  pair.reference.add(0, 0, 0);
+  pair.landmarks[2].second = int(other.points.size());
+  refuses(pair, "(pair 2) has no face");
+
+  const Pair by_index{torus(12, 8), torus(12, 8), {{0, 0}, {30, 30}, {60, 60}, {80, 80}}};
+  refuses(by_index, "source: has 0 borders and genus 1");
+  pair = by_index;
+  pair.source = meridian_sphere(20, 12);
+  refuses(pair, "reference: has 0 borders and genus 1");
+  pair.reference = annulus(30, 4);
+  refuses(pair, "reference: has 2 borders and genus 0");
+  pair.reference = joined(icosphere(1), icosphere(1), Vector_3(3, 0, 0));
+  refuses(pair, "reference: has 2 connected components");
+  std::swap(pair.source, pair.reference);
+  refuses(pair, "source: has 2 connected components");
+  pair.source = square(12, 10);
+  refuses(pair, "the other (source) has a border");
+  std::swap(pair.source, pair.reference);
+  refuses(pair, "the other (reference) has a border");
+
+  const auto at = [](int i, int j) { return 9 * j + i; };
+  const Shape grid = deformed(square(8, 8), hilly);
+  pair = Pair{grid, grid, {{at(0, 0), at(0, 0)}, {at(8, 0), at(8, 0)}, {at(4, 8), at(4, 7)}}};
+  refuses(pair, "of pair 2 only one vertex is on the border");
+  std::swap(pair.landmarks[2].first, pair.landmarks[2].second);
+  refuses(pair, "of pair 2 only one vertex is on the border");
+  pair.landmarks = {
+    {at(0, 0), at(0, 0)}, {at(8, 0), at(0, 8)}, {at(8, 8), at(8, 8)}, {at(0, 8), at(8, 0)}};
+  refuses(pair, "opposite");
+  // neither way round
+  const int around[] = {at(0, 0), at(8, 8), at(8, 0), at(0, 8)};
+  for(int i = 0; i < 4; ++i)
+    pair.landmarks[i].second = around[i];
+  refuses(pair, "not in the same order");
+
+  // a long limb without a landmark: too small in the plane to be told from a point
+  const Shape limb = closed_cylinder(10, 120, 0.1, 12);
+  pair = Pair{limb, limb, {{0, 0}, {3, 3}, {6, 6}}};
+  refuses(pair, "trees led to a bijective map");
+}
+
+// ---------------------------------------------------------------------------------- internals
+
+// each path is passed in both directions, the border in one, and every side starts where the last
+// one ended
+void check_boundary(const internal::Landmark_tree& tree)
+{
+  const std::vector<internal::Landmark_tree::Side> sides = tree.boundary();
+  std::vector<int> forward(tree.arcs().size(), 0), backward(tree.arcs().size(), 0);
+  const auto ends = [&](std::size_t i) {
+    const internal::Landmark_tree::Arc& arc = tree.arcs()[sides[i % sides.size()].arc];
+    return sides[i % sides.size()].is_forward ? std::make_pair(arc.from, arc.to)
+                                              : std::make_pair(arc.to, arc.from);
+  };
+  for(std::size_t i = 0; i < sides.size(); ++i)
+  {
+    ++(sides[i].is_forward ? forward : backward)[sides[i].arc];
+    RCO_CHECK_EQUAL(ends(i).second, ends(i + 1).first);
+  }
+  for(std::size_t a = 0; a < tree.arcs().size(); ++a)
+  {
+    RCO_CHECK_EQUAL(forward[a], 1);
+    RCO_CHECK_EQUAL(backward[a], tree.arcs()[a].is_border ? 0 : 1);
+  }
+}
+
+// pairs that connect n nodes, the first `connected` being so already; in random order
+std::vector<std::pair<int, int>> random_tree(int n, int connected, Random& random)
+{
+  std::vector<std::pair<int, int>> edges;
+  for(int i = (std::max)(1, connected); i < n; ++i)
+    edges.push_back({random.index(i), i});
+  for(std::size_t i = edges.size(); i > 1; --i)
+    std::swap(edges[i - 1], edges[random.index(int(i))]);
+  for(auto& e : edges)
+    if(random() < 0.5)
+      std::swap(e.first, e.second);
+  return edges;
+}
+
+void test_landmark_trees()
+{
+  Random random(1);
+  for(int k = 0; k < 300; ++k)
+  {
+    const Scope scope("random tree " + std::to_string(k));
+    const int border = k % 2 == 0 ? 0 : 3 + random.index(4), n = border + 2 + random.index(9);
+    internal::Landmark_tree tree(n);
+    std::vector<int> on_border;
+    for(int i = 0; i < border; ++i)
+      on_border.push_back(i);
+    if(border > 0)
+      tree.add_border(on_border);
+    for(const auto& e : random_tree(n, border, random))
+      tree.add_path(e.first, random.index(tree.number_of_sectors(e.first)), e.second,
+                    random.index(tree.number_of_sectors(e.second)));
+    check_boundary(tree);
+  }
+}
+
+// Cuts along a random tree and lays out: if a map is found it is one-to-one. Whether one was found.
+bool check_flattening(const Shape& shape,
+                      const std::vector<int>& landmarks,
+                      const std::vector<std::pair<int, int>>& edges)
+{
+  internal::Cut_surface cut(copy_of(shape));
+  cut.set_landmarks(landmarks);
+  cut.split_chords();
+  internal::Landmark_tree tree{int(landmarks.size())};
+  const std::vector<int> border = cut.border_landmarks();
+  if(!border.empty())
+  {
+    tree.add_border(border);
+    for(std::size_t i = 0; i < border.size(); ++i)
+      cut.lay_border_arc(border[i], border[(i + 1) % border.size()]);
+  }
+  for(const auto& e : edges)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    int from = 0, to = 0;
+    for(int s = 0; s < tree.number_of_sectors(e.first); ++s)
+    {
+      const internal::Cut_surface::Distances d = cut.distances(e.first, tree, s);
+      for(int t = 0; t < tree.number_of_sectors(e.second); ++t)
+        if(cut.length_to(e.second, tree, t, d) < least)
+        {
+          least = cut.length_to(e.second, tree, t, d);
+          from = s;
+          to = t;
+        }
+    }
+    // with all chords split there is always a way
+    if(!RCO_CHECK(std::isfinite(least)))
+      return false;
+    cut.lay_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from));
+    tree.add_path(e.first, from, e.second, to);
+  }
+  check_boundary(tree);
+
+  const std::vector<internal::Landmark_tree::Side> sides = tree.boundary();
+  std::vector<double> lengths;
+  for(const internal::Landmark_tree::Side& s : sides)
+    lengths.push_back(cut.arc_length(s.arc));
+  const auto corners = internal::Polygon_flattening::polygon(lengths);
+  internal::Polygon_flattening map;
+  if(!map.flatten(cut, sides, corners))
+    return false;
+  const internal::Cut_surface::Mesh& mesh = cut.mesh();
+  double covered = 0;
+  for(const auto f : mesh.faces())
+  {
+    const auto h = mesh.halfedge(f);
+    const auto &a = map(h), &b = map(mesh.next(h)), &c = map(mesh.prev(h));
+    RCO_CHECK(CGAL::orientation(a, b, c) == CGAL::LEFT_TURN);
+    covered += CGAL::area(a, b, c);
+  }
+  double polygon = 0;
+  for(std::size_t i = 1; i + 1 < corners.size(); ++i)
+    polygon -= CGAL::area(corners[0], corners[i], corners[i + 1]); // clockwise
+  RCO_CHECK_LESS(0., polygon);
+  RCO_CHECK_NEAR(covered, polygon, 1e-9);
+  // the two sides of an edge that is not cut agree
+  for(const auto e : mesh.edges())
+  {
+    const auto h = mesh.halfedge(e), o = mesh.opposite(h);
+    if(!cut.is_cut()[e] && !mesh.is_border(e))
+      RCO_CHECK(map(h) == map(mesh.prev(o)) && map(o) == map(mesh.prev(h)));
+  }
+  return true;
+}
+
+void test_flattenings()
+{
+  Random random(2);
+  const Shape shapes[] = {octahedron(), icosphere(0), deformed(icosphere(2), bumpy),
+                          deformed(meridian_sphere(16, 10), ellipsoidal)};
+  int found = 0, tried = 0;
+  for(int k = 0; k < 24; ++k)
+  {
+    const Scope scope("flattening " + std::to_string(k));
+    const Shape& shape = shapes[k % 4];
+    const int n = (std::min)(3 + random.index(5), int(shape.points.size()));
+    std::vector<int> all, landmarks;
+    for(int v = 0; v < int(shape.points.size()); ++v)
+      all.push_back(v);
+    for(int i = 0; i < n; ++i)
+    {
+      std::swap(all[i], all[i + random.index(int(all.size()) - i)]);
+      landmarks.push_back(all[i]);
+    }
+    ++tried;
+    found += check_flattening(shape, landmarks, random_tree(n, 0, random));
+  }
+  RCO_CHECK_EQUAL(found, tried);
+  {
+    const Scope scope("flattening a square");
+    const auto at = [](int i, int j) { return 11 * j + i; };
+    const Shape shape = deformed(square(10, 10), hilly);
+    const std::vector<int> landmarks = {at(0, 0), at(10, 0), at(10, 10), at(0, 10),
+                                        at(3, 3), at(7, 4),  at(5, 8),   at(5, 9)};
+    for(int k = 0; k < 4; ++k)
+      RCO_CHECK(check_flattening(shape, landmarks, random_tree(8, 4, random)));
+  }
+  const Scope scope("flattening a long limb");
+  RCO_CHECK(!check_flattening(closed_cylinder(10, 120, 0.1, 12), {0, 3, 6}, {{0, 1}, {1, 2}}));
+}
+
+// ----------------------------------------------------------- optimization from initial meshes
+
+void test_from_initial_meshes()
+{
+  const auto run = [](const Pair& pair, const std::string& name) {
+    const Mapped start = mapped(pair, name);
+    const Scope scope("optimization of " + name);
+    if(start.shape.points.empty())
+      return;
+    const Outcome out = optimized(pair.source, start.shape, pair.reference);
+    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+    RCO_CHECK_LESS(out.result.number_of_flattened_patches, out.result.number_of_accepted_patches);
+    RCO_CHECK_LESS(std::size_t(0), out.result.number_of_flattened_patches);
+    const Outcome plain = optimized(pair.source, start.shape, pair.reference, false);
+    RCO_CHECK_LESS(plain.result.final_energy, plain.result.initial_energy);
+    RCO_CHECK_EQUAL(plain.result.number_of_flattened_patches,
+                    plain.result.number_of_accepted_patches);
+    RCO_CHECK_NEAR(plain.distortion.mean, out.distortion.mean, 0.1 * out.distortion.mean);
+    for(const Outcome* o : {&out, &plain})
+      std::cout << "optimization of " << name << (o == &out ? "" : ", flattened only")
+                << ": energy " << o->result.initial_energy << " -> " << o->result.final_energy
+                << ", defects "
+                << o->result.initial_number_of_flips + o->result.initial_number_of_fold_edges
+                << " -> " << o->result.number_of_flips + o->result.number_of_fold_edges << ", "
+                << o->result.number_of_iterations << " iterations, " << o->result.running_time
+                << " s" << std::endl;
+  };
+  run(sphere_pair(
+        icosphere(3), [](const Vector_3& p) { return twisted(ellipsoidal(p)); },
+        meridian_sphere(48, 30), [](const Vector_3& p) { return bent(ellipsoidal(p)); }, 8),
+      "two ellipsoids");
+  run(sphere_pair(meridian_sphere(30, 20), bumpy, icosphere(4), ellipsoidal, 4),
+      "a blob and an ellipsoid");
+  run(square_pair({Vector_2(0, 0), Vector_2(1, 0), Vector_2(1, 1), Vector_2(0, 1)}), "two squares");
+}
+
+// -------------------------------------------------------------------------------- hard starts
+
+void check_hard_start(const std::string& name,
+                      const Shape& source,
+                      const Shape& start,
+                      const Shape& reference,
+                      double& largest)
+{
+  const Scope scope("hard start: " + name);
+  const internal::Reference_surface surface(copy_of(reference));
+  const Outcome out = optimized(source, start, reference);
+  const double before = capped_energy(source, start, surface, 100),
+               after = capped_energy(source, out.after, surface, 100);
+  RCO_CHECK_LESS_EQUAL(after, before);
+  largest = out.distortion.maximum;
+  std::cout << "hard start, " << name << ": defects "
+            << out.result.initial_number_of_flips + out.result.initial_number_of_fold_edges
+            << " -> " << out.result.number_of_flips + out.result.number_of_fold_edges
+            << ", capped energy " << before << " -> " << after << ", largest distortion "
+            << out.distortion.maximum << ", " << out.result.running_time << " s" << std::endl;
+}
+
+void test_hard_starts()
+{
+  double largest = 0;
+  for(const bool has_border : {false, true})
+    for(const int seed : {1, 2})
+    {
+      const Deformation f = has_border ? Deformation(hilly) : Deformation(bumpy);
+      const Shape base = has_border ? square(24, 24) : icosphere(3);
+      const Shape fine = has_border ? square(40, 40) : icosphere(4);
+      const Shape source = deformed(base, f), reference = deformed(fine, f);
+      const Indexed_mesh mesh = indexed(source);
+      // onto R, then some onto vertices of it that are up to two edges away
+      const internal::Reference_surface surface(copy_of(reference));
+      Shape start = source;
+      Random random(seed);
+      const double edge = internal::mean_edge_length(mesh, source.points);
+      for(std::size_t v = 0; v < start.points.size(); ++v)
+      {
+        if(mesh.is_border_vertex[v])
+          continue;
+        start.points[v] = surface.closest(start.points[v]).position;
+        if(random() > 0.05)
+          continue;
+        std::vector<int> near;
+        for(std::size_t w = 0; w < reference.points.size(); ++w)
+          if((reference.points[w] - source.points[v]).norm() < 2 * edge)
+            near.push_back(int(w));
+        start.points[v] = reference.points[near[random.index(int(near.size()))]];
+      }
+      check_hard_start(std::string(has_border ? "a square" : "a sphere") +
+                         " with vertices on others, seed " + std::to_string(seed),
+                       source, start, reference, largest);
+    }
+  {
+    // one vertex is moved, in its face, to 1e-4 of that face's height
+    const Shape source = deformed(icosphere(3), bumpy);
+    Shape start = source;
+    const std::vector<int>& t = source.faces[200];
+    Vector_3& p = start.points[t[0]];
+    p = 0.5 * (start.points[t[1]] + start.points[t[2]]) * (1 - 1e-4) + 1e-4 * p;
+    RCO_CHECK_LESS(0.9e8, dirichlet(source, start, t, 1));
+    check_hard_start("a face of distortion 1e8", source, start, source, largest);
+    RCO_CHECK_LESS(largest, 3.);
+  }
+}
+
+// ------------------------------------------------------------------------------ on the surface
+
+// The language allows private members to be named where a template is instantiated explicitly.
+template <typename Tag, typename Tag::type Member>
+struct Access
+{
+  friend typename Tag::type member(Tag) { return Member; }
+};
+struct Problem_tag
+{
+  typedef internal::Tangent_problem internal::On_surface_mover::*type;
+  friend type member(Problem_tag);
+};
+template struct Access<Problem_tag, &internal::On_surface_mover::m_problem>;
+struct Frames_tag
+{
+  typedef std::vector<internal::Tangent_problem::Frame> internal::On_surface_mover::*type;
+  friend type member(Frames_tag);
+};
+template struct Access<Frames_tag, &internal::On_surface_mover::m_frames>;
+struct Right_tag
+{
+  typedef Eigen::VectorXd internal::Projected_newton::*type;
+  friend type member(Right_tag);
+};
+template struct Access<Right_tag, &internal::Projected_newton::m_right>;
+struct Assemble_tag
+{
+  typedef double (internal::Projected_newton::*type)(const internal::Tangent_problem&,
+                                                     const Energy::Density&,
+                                                     const std::vector<Vector_2>&);
+  friend type member(Assemble_tag);
+};
+template struct Access<
+  Assemble_tag,
+  &internal::Projected_newton::assemble<internal::Tangent_problem, Energy::Density>>;
+
+void test_on_surface_steps(const std::string& name, const Shape& shape, const Vector_3& center)
+{
+  const Scope scope("on-surface steps, " + name);
+  internal::Reference_surface surface(copy_of(shape));
+  double way = 0;
+  const Shape start = wandered(shape, surface, 4, 0.2, 3, way);
+  const internal::Mesh_copy copy = copy_of(start);
+  const Energy energy(make_mesh<Mesh>(shape));
+  const RCO::Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex,
+                                    copy.points.size(), 1, area(start), surface.area());
+  const internal::Element_set elements(energy, context);
+  internal::Optimization_state state{copy.mesh, surface, elements, {}, {}};
+  for(const char is_border : copy.mesh.is_border_vertex)
+    state.is_free.push_back(!is_border);
+  RCO::Result unused;
+  internal::place_on_reference(copy.points, surface, state, unused);
+  std::vector<int> faces;
+  for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
+  {
+    const std::vector<int>& t = start.faces[f];
+    if(((start.points[t[0]] + start.points[t[1]] + start.points[t[2]]) / 3 - center).norm() < 0.4)
+      faces.push_back(f);
+  }
+  internal::Patch_builder builder(copy.mesh);
+  const internal::Patch patch = builder.build(faces, state);
+  RCO_CHECK(patch.number_of_free_vertices >= 10);
+  const int n = int(patch.vertices.size());
+  const Energy::Density& density = energy.density();
+
+  // without steps the mover only sets up its problem
+  internal::On_surface_mover still(surface, 0);
+  RCO_CHECK(!still.propose(patch, density));
+  const internal::Tangent_problem& problem = still.*member(Problem_tag());
+  const auto& frames = still.*member(Frames_tag());
+  const auto value = [&](const std::vector<Vector_2>& u) {
+    double sum = 0;
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+      sum += density.value(problem.shape(e, u) * problem.rest_inverse[e]);
+    return sum;
+  };
+  // the energy in space, of which the problem is the first order
+  const auto value_in_space = [&](const std::vector<Vector_2>& u) {
+    std::vector<internal::Placed_vertex> placed = patch.placed;
+    for(int v = 0; v < n; ++v)
+      placed[v].position += frames[v] * u[v];
+    double sum = 0;
+    for(const internal::Element_set::Element& e : patch.elements)
+      sum += internal::element_energy(
+        density, e, [&](int v) -> const internal::Placed_vertex& { return placed[v]; });
+    return sum;
+  };
+  std::vector<Vector_2> u(n, Vector_2::Zero());
+  internal::Projected_newton newton;
+  newton.analyze(problem);
+  const double energy_at_start = (newton.*member(Assemble_tag()))(problem, density, u);
+  const Eigen::VectorXd gradient = -(newton.*member(Right_tag()));
+  RCO_CHECK_EQUAL(gradient.size(), 2 * patch.number_of_free_vertices);
+  RCO_CHECK_NEAR(energy_at_start, value(u), 1e-10 * energy_at_start);
+  RCO_CHECK_NEAR(energy_at_start, value_in_space(u), 1e-10 * energy_at_start);
+  const double size = gradient.cwiseAbs().maxCoeff(), h = 1e-6;
+  RCO_CHECK_LESS(1., size);
+  int variable = 0;
+  for(int v = 0; v < n; ++v)
+  {
+    RCO_CHECK_NEAR((frames[v].transpose() * frames[v] - Eigen::Matrix2d::Identity()).norm(), 0.,
+                   1e-14);
+    RCO_CHECK_LESS((frames[v].transpose() * patch.placed[v].normal).norm(), 1e-14);
+    if(!patch.is_free[v])
+      continue;
+    for(int i = 0; i < 2; ++i, ++variable)
+    {
+      double difference[2] = {0, 0};
+      for(const double sign : {1., -1.})
+      {
+        u[v](i) = sign * h;
+        difference[0] += sign * value(u) / (2 * h);
+        difference[1] += sign * value_in_space(u) / (2 * h);
+        u[v](i) = 0;
+      }
+      RCO_CHECK_NEAR(difference[0], gradient(variable), 1e-5 * size);
+      RCO_CHECK_NEAR(difference[1], gradient(variable), 1e-5 * size);
+    }
+  }
+
+  // descent to a place where the gradient vanishes
+  const internal::Projected_newton::Outcome outcome =
+    newton.minimize(problem, density, u, 200, 1e-14);
+  RCO_CHECK_LESS(outcome.final_energy, outcome.initial_energy);
+  RCO_CHECK_NEAR(outcome.initial_energy, energy_at_start, 1e-10 * energy_at_start);
+  RCO_CHECK_NEAR(outcome.final_energy, value(u), 1e-10 * energy_at_start);
+  (newton.*member(Assemble_tag()))(problem, density, u);
+  RCO_CHECK_LESS((newton.*member(Right_tag())).norm(), 1e-3 * gradient.norm());
+  for(int v = 0; v < n; ++v)
+    if(!patch.is_free[v])
+      RCO_CHECK(u[v] == Vector_2::Zero());
+
+  // steps end on the surface
+  internal::On_surface_mover mover(surface, 2);
+  RCO_CHECK(mover.propose(patch, density));
+  int placed = 0;
+  for(int v = 0; v < n; ++v)
+    for(const double t : {1., 0.4, 1e-3})
+    {
+      internal::Placed_vertex p;
+      if(!patch.is_free[v] || !mover.place(patch, v, t, p))
+        continue;
+      ++placed;
+      RCO_CHECK_LESS((surface.closest(p.position).position - p.position).norm(), 1e-13);
+      RCO_CHECK_NEAR(p.on_reference.barycentric.sum(), 1., 1e-13);
+      RCO_CHECK(p.on_reference.barycentric.minCoeff() >= 0);
+      const internal::Surface_point again =
+        surface.point(p.on_reference.face, p.on_reference.barycentric);
+      RCO_CHECK_LESS((again.position - p.position).norm(), 1e-13);
+      RCO_CHECK_LESS((surface.normal(again) - p.normal).norm(), 1e-12);
+      RCO_CHECK_LESS(0., p.normal.dot(patch.placed[v].normal));
+    }
+  // almost none is refused
+  RCO_CHECK_LESS_EQUAL(0.9 * 3 * patch.number_of_free_vertices, double(placed));
+}
+
+int main()
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto timed = [&](const char* name, const std::function<void()>& test) {
+    test();
+    std::cout << "["
+              << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
+              << " s] " << name << std::endl;
+  };
+  timed("the energy", test_energy);
+  timed("the energy of quads", test_energy_of_quads);
+  timed("sources that do not match", test_energy_mismatches);
+  timed("landmark trees", test_landmark_trees);
+  timed("flattenings", test_flattenings);
+  timed("closed maps", test_closed_maps);
+  timed("disk maps", test_disk_maps);
+  timed("coarse maps", test_coarse_maps);
+  timed("random maps", test_random_maps);
+  timed("random disk maps", test_random_disk_maps);
+  timed("maps of degenerate meshes", test_degenerate_maps);
+  timed("parameters of maps", test_map_parameters);
+  timed("errors of maps", test_map_errors);
+  timed("on-surface steps", [] {
+    test_on_surface_steps("a blob", deformed(icosphere(3), bumpy), bumpy(Vector_3(1, 0, 0)));
+    test_on_surface_steps("a hill", deformed(square(20, 20), hilly), hilly(Vector_3(0.6, 0.4, 0)));
+    test_on_surface_steps("a border", deformed(square(20, 20), hilly), Vector_3(0.1, 0.1, 0));
+  });
+  timed("optimization of maps", test_from_initial_meshes);
+  timed("hard starts", test_hard_starts);
+  timed("known optima", test_known_optima);
+  return report();
+}
