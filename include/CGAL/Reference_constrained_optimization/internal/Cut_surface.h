@@ -13,14 +13,14 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/iterator.h>
 
-#include <boost/graph/dijkstra_shortest_paths.hpp>
-#include <boost/property_map/function_property_map.hpp>
 #include <boost/property_map/property_map.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -199,20 +199,25 @@ public:
       split(m_mesh.halfedge(e), 0.5);
   }
 
-  // all vertices' distance from a landmark, with nothing in the way; within a sector, over vertices
-  // that are not taken
+  // all vertices' distance from a landmark, with nothing in the way
   Distances distances(int landmark) const
   {
     return search(
-      landmark, [](Vertex) { return false; }, [](Halfedge) { return true; });
+      landmark, [](Vertex) { return false; }, [](Halfedge) { return true; }, {});
   }
-  Distances distances(int landmark, const Landmark_tree& tree, int sector) const
+  // distances from a landmark within a sector, over vertices that are not taken, of the vertices
+  // around another landmark; those of vertices further away are not all computed
+  Distances distances(int from, const Landmark_tree& tree, int sector, int to) const
   {
-    const std::vector<int> sector_of = sectors(landmark, tree);
-    const Vertex start = m_landmarks[landmark];
+    const std::vector<int> sector_of = sectors(from, tree);
+    const Vertex start = m_landmarks[from];
+    std::vector<Vertex> goals;
+    for(const Halfedge h : leaving(to))
+      if(!m_is_taken[m_mesh.target(h)])
+        goals.push_back(m_mesh.target(h));
     return search(
-      landmark, [&](Vertex v) { return m_is_taken[v] && v != start; },
-      [&](Halfedge h) { return sector_of[rank(landmark, h)] == sector; });
+      from, [&](Vertex v) { return m_is_taken[v] && v != start; },
+      [&](Halfedge h) { return sector_of[rank(from, h)] == sector; }, goals);
   }
 
   // length of the path to a landmark that arrives there within a sector; infinite if there is none
@@ -331,33 +336,49 @@ private:
     return result;
   }
 
+  // shortest paths (Dijkstra); they end where all goals, if there are any, are reached
   template <typename Blocked, typename FirstStep>
-  Distances search(int landmark, const Blocked& is_blocked, const FirstStep& may_start) const
+  Distances search(int landmark,
+                   const Blocked& is_blocked,
+                   const FirstStep& may_start,
+                   const std::vector<Vertex>& goals) const
   {
-    const double infinity = std::numeric_limits<double>::infinity();
+    typedef std::pair<double, Vertex> Reached;
     const Vertex start = m_landmarks[landmark];
-    std::vector<char> may_leave(m_mesh.number_of_halfedges(), 0);
-    for(const Halfedge h : CGAL::halfedges_around_source(start, m_mesh))
-      may_leave[h] = may_start(h);
-    const auto weight = boost::make_function_property_map<Edge>([&](Edge e) -> double {
-      const Halfedge h = m_mesh.halfedge(e);
-      const Vertex s = m_mesh.source(h), t = m_mesh.target(h);
-      if(is_blocked(s) || is_blocked(t) || (s == start && !may_leave[h]) ||
-         (t == start && !may_leave[m_mesh.opposite(h)]))
-        return infinity;
-      return length(h);
-    });
     Distances d;
-    d.length.resize(m_mesh.number_of_vertices());
-    d.predecessor.resize(m_mesh.number_of_vertices());
-    const auto index = get(boost::vertex_index, m_mesh);
-    boost::dijkstra_shortest_paths(
-      m_mesh, start,
-      boost::weight_map(weight)
-        .vertex_index_map(index)
-        .distance_map(boost::make_iterator_property_map(d.length.begin(), index))
-        .predecessor_map(boost::make_iterator_property_map(d.predecessor.begin(), index))
-        .distance_inf(infinity));
+    d.length.assign(m_mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
+    d.predecessor.assign(m_mesh.number_of_vertices(), Mesh::null_vertex());
+    std::vector<char> is_goal(m_mesh.number_of_vertices(), 0);
+    for(const Vertex v : goals)
+      is_goal[v] = 1;
+    std::size_t missing = goals.size();
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<Reached>> queue;
+    d.length[start] = 0;
+    queue.push({0, start});
+    while(!queue.empty())
+    {
+      const auto [length_to_v, v] = queue.top();
+      queue.pop();
+      if(length_to_v > d.length[v])
+        continue;
+      if(is_goal[v])
+      {
+        is_goal[v] = 0;
+        if(--missing == 0)
+          break;
+      }
+      for(const Halfedge h : CGAL::halfedges_around_source(v, m_mesh))
+      {
+        const Vertex w = m_mesh.target(h);
+        const double sum = length_to_v + length(h);
+        if(sum < d.length[w] && !is_blocked(w) && (v != start || may_start(h)))
+        {
+          d.length[w] = sum;
+          d.predecessor[w] = v;
+          queue.push({sum, w});
+        }
+      }
+    }
     return d;
   }
 

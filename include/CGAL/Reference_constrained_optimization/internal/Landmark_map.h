@@ -260,7 +260,7 @@ private:
     for(int s = 0; s < tree.number_of_sectors(from); ++s)
     {
       std::pair<Cut_surface::Distances, Cut_surface::Distances> distances(
-        source.distances(from, tree, s), reference.distances(from, tree, s));
+        source.distances(from, tree, s, to), reference.distances(from, tree, s, to));
       bool is_best = false;
       for(int t = 0; t < tree.number_of_sectors(to); ++t)
       {
