@@ -1069,7 +1069,7 @@ bool check_flattening(const Shape& shape,
     int from = 0, to = 0;
     for(int s = 0; s < tree.number_of_sectors(e.first); ++s)
     {
-      const internal::Cut_surface::Distances d = cut.distances(e.first, tree, s);
+      const internal::Cut_surface::Distances d = cut.distances(e.first, tree, s, e.second);
       for(int t = 0; t < tree.number_of_sectors(e.second); ++t)
         if(cut.length_to(e.second, tree, t, d) < least)
         {
@@ -1081,7 +1081,7 @@ bool check_flattening(const Shape& shape,
     // with all chords split there is always a way
     if(!RCO_CHECK(std::isfinite(least)))
       return false;
-    cut.lay_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from));
+    cut.lay_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from, e.second));
     tree.add_path(e.first, from, e.second, to);
   }
   check_boundary(tree);
