@@ -110,7 +110,8 @@ void remove_elements(Mesh& mesh, long)
  * \e Mean \e value \e coordinates, 2003). Each vertex of the source is then located in the
  * reference's triangles in the plane. That both layouts are bijective is checked by exact
  * predicates. Since the choice of the tree decides much about the distortion, several are tried,
- * and the map of least distortion is kept.
+ * those along which both surfaces can be cut without detours, and the map of least distortion is
+ * kept.
  *
  * The two surfaces must be closed and of genus 0, or disks. Borders are mapped onto each other.
  * A reference that is closed and oriented the other way round is turned round first.

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CUT_SURFACE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CUT_SURFACE_H
 
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/Landmark_tree.h>
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 
@@ -21,6 +22,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -56,10 +58,11 @@ public:
       for(const auto& t : split_face(copy.mesh, copy.points, f))
       {
         const auto at = [&](int i) { return Vertex(copy.mesh.corner_vertex[t[i]]); };
-        if(is_reversed)
-          m_mesh.add_face(at(2), at(1), at(0));
-        else
-          m_mesh.add_face(at(0), at(1), at(2));
+        const Mesh::Face_index added =
+          is_reversed ? m_mesh.add_face(at(2), at(1), at(0)) : m_mesh.add_face(at(0), at(1), at(2));
+        if(added == Mesh::null_face())
+          throw Invalid_input("compatible_initial_mesh: face " + std::to_string(f) +
+                              " of one of the meshes is a quad whose diagonal is an edge already");
       }
     m_is_taken = m_mesh.add_property_map<Vertex, bool>("v:is_taken", false).first;
     m_is_cut = m_mesh.add_property_map<Edge, bool>("e:is_cut", false).first;
@@ -206,8 +209,8 @@ public:
       landmark, [](Vertex) { return false; }, [](Halfedge) { return true; }, {});
   }
   // distances from a landmark within a sector, over vertices that are not taken, of the vertices
-  // around another landmark; those of vertices further away are not all computed
-  Distances distances(int from, const Landmark_tree& tree, int sector, int to) const
+  // around another landmark, up to a limit; those of vertices further away are not all computed
+  Distances distances(int from, const Landmark_tree& tree, int sector, int to, double limit) const
   {
     const std::vector<int> sector_of = sectors(from, tree);
     const Vertex start = m_landmarks[from];
@@ -217,7 +220,7 @@ public:
         goals.push_back(m_mesh.target(h));
     return search(
       from, [&](Vertex v) { return m_is_taken[v] && v != start; },
-      [&](Halfedge h) { return sector_of[rank(from, h)] == sector; }, goals);
+      [&](Halfedge h) { return sector_of[rank(from, h)] == sector; }, goals, limit);
   }
 
   // length of the path to a landmark that arrives there within a sector; infinite if there is none
@@ -336,12 +339,13 @@ private:
     return result;
   }
 
-  // shortest paths (Dijkstra); they end where all goals, if there are any, are reached
+  // shortest paths (Dijkstra); they end at a limit or where all goals, if there are any, are reached
   template <typename Blocked, typename FirstStep>
   Distances search(int landmark,
                    const Blocked& is_blocked,
                    const FirstStep& may_start,
-                   const std::vector<Vertex>& goals) const
+                   const std::vector<Vertex>& goals,
+                   double limit = std::numeric_limits<double>::infinity()) const
   {
     typedef std::pair<double, Vertex> Reached;
     const Vertex start = m_landmarks[landmark];
@@ -359,6 +363,8 @@ private:
     {
       const auto [length_to_v, v] = queue.top();
       queue.pop();
+      if(length_to_v > limit)
+        break;
       if(length_to_v > d.length[v])
         continue;
       if(is_goal[v])

@@ -76,16 +76,12 @@ public:
   // tries trees and keeps the best; the points of the best map, none if there is none
   std::vector<Vector_3> map(int number_of_trees, unsigned int seed, std::vector<Tried_tree>& tried)
   {
-    Spanning_trees trees(m_distance, m_border, seed);
     std::vector<Vector_3> best, points;
     double least = std::numeric_limits<double>::infinity();
-    for(int k = 0; k < number_of_trees; ++k)
+    for(const Landmark_pairs& edges : promising_trees(number_of_trees, seed))
     {
       Tried_tree t;
-      t.edges = trees.tree(k);
-      const auto is_same = [&](const Tried_tree& other) { return other.edges == t.edges; };
-      if(std::find_if(tried.begin(), tried.end(), is_same) != tried.end())
-        continue;
+      t.edges = edges;
       t.is_bijective = map_along(t.edges, points);
       if(t.is_bijective)
         t.distortion = distortion(points);
@@ -220,11 +216,50 @@ private:
     measure_distances();
   }
 
-  // the points for one tree; false if one of the surfaces could not be laid out bijectively
-  bool map_along(const Landmark_pairs& edges, std::vector<Vector_3>& points) const
+  // Trees that are worth being laid out, the best first. Laying paths is cheap, thus many trees are
+  // compared by them: where paths have to go a long way round earlier ones, those passed another
+  // landmark on different sides of it on the two surfaces, and the map would be twisted.
+  std::vector<Landmark_pairs> promising_trees(int number, unsigned int seed) const
   {
-    Cut_surface source(m_source), reference(m_reference);
-    Landmark_tree tree(int(source.landmarks().size()));
+    const int trees_per_layout = 4;
+    Spanning_trees trees(m_distance, m_border, seed);
+    std::vector<std::pair<double, Landmark_pairs>> candidates;
+    for(int k = 0; k < trees_per_layout * number; ++k)
+    {
+      Landmark_pairs edges = trees.tree(k);
+      const auto is_same = [&](const auto& other) { return other.second == edges; };
+      if(std::find_if(candidates.begin(), candidates.end(), is_same) != candidates.end())
+        continue;
+      Cut_surface source(m_source), reference(m_reference);
+      Landmark_tree tree(int(source.landmarks().size()));
+      double cost = std::numeric_limits<double>::infinity();
+      if(lay_tree(edges, tree, source, reference))
+      {
+        double length = 0, direct = 0;
+        for(std::size_t i = 0; i < tree.arcs().size(); ++i)
+          if(!tree.arcs()[i].is_border)
+            length += source.arc_length(int(i)) + reference.arc_length(int(i));
+        for(const auto& edge : edges)
+          direct += m_distance[edge.first][edge.second];
+        cost = edges.empty() ? 0 : length * (length / direct);
+      }
+      candidates.emplace_back(cost, std::move(edges));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Landmark_pairs> result;
+    for(const auto& candidate : candidates)
+      if(int(result.size()) < number)
+        result.push_back(candidate.second);
+    return result;
+  }
+
+  // false if there is no way for one of the paths
+  bool lay_tree(const Landmark_pairs& edges,
+                Landmark_tree& tree,
+                Cut_surface& source,
+                Cut_surface& reference) const
+  {
     if(!m_border.empty())
     {
       tree.add_border(m_border);
@@ -237,6 +272,16 @@ private:
     for(const auto& edge : edges)
       if(!lay_path(edge.first, edge.second, tree, source, reference))
         return false;
+    return true;
+  }
+
+  // the points for one tree; false if one of the surfaces could not be laid out bijectively
+  bool map_along(const Landmark_pairs& edges, std::vector<Vector_3>& points) const
+  {
+    Cut_surface source(m_source), reference(m_reference);
+    Landmark_tree tree(int(source.landmarks().size()));
+    if(!lay_tree(edges, tree, source, reference))
+      return false;
 
     const std::vector<Landmark_tree::Side> sides = tree.boundary();
     std::vector<double> lengths;
@@ -259,8 +304,14 @@ private:
     std::pair<Cut_surface::Distances, Cut_surface::Distances> best;
     for(int s = 0; s < tree.number_of_sectors(from); ++s)
     {
-      std::pair<Cut_surface::Distances, Cut_surface::Distances> distances(
-        source.distances(from, tree, s, to), reference.distances(from, tree, s, to));
+      std::pair<Cut_surface::Distances, Cut_surface::Distances> distances;
+      distances.first = source.distances(from, tree, s, to, least);
+      double on_source = std::numeric_limits<double>::infinity();
+      for(int t = 0; t < tree.number_of_sectors(to); ++t)
+        on_source = (std::min)(on_source, source.length_to(to, tree, t, distances.first));
+      if(!(on_source < least))
+        continue;
+      distances.second = reference.distances(from, tree, s, to, least - on_source);
       bool is_best = false;
       for(int t = 0; t < tree.number_of_sectors(to); ++t)
       {
