@@ -210,7 +210,11 @@ public:
   }
   // distances from a landmark within a sector, over vertices that are not taken, of the vertices
   // around another landmark, up to a limit; those of vertices further away are not all computed
-  Distances distances(int from, const Landmark_tree& tree, int sector, int to, double limit) const
+  Distances distances(int from,
+                      const Landmark_tree& tree,
+                      int sector,
+                      int to,
+                      double limit = std::numeric_limits<double>::infinity()) const
   {
     const std::vector<int> sector_of = sectors(from, tree);
     const Vertex start = m_landmarks[from];
