@@ -144,7 +144,8 @@ void remove_elements(Mesh& mesh, long)
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, source)`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{number_of_iterations}
- *     \cgalParamDescription{the number of trees that are tried}
+ *     \cgalParamDescription{the number of trees along which the surfaces are laid out; fewer if
+ *                           there are not so many}
  *     \cgalParamType{`unsigned int`}
  *     \cgalParamDefault{`6`}
  *   \cgalParamNEnd

@@ -12,16 +12,12 @@
 #include <CGAL/Reference_constrained_optimization/internal/Spanning_trees.h>
 #include <CGAL/Reference_constrained_optimization/internal/polygon_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/surface_topology.h>
 #include <CGAL/Reference_constrained_optimization/internal/transfer_through_polygon.h>
-
-#include <CGAL/Polygon_mesh_processing/border.h>
-#include <CGAL/Polygon_mesh_processing/connected_components.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -48,8 +44,8 @@ public:
       m_source(source),
       m_reference(reference, are_opposite(source, reference))
   {
-    const bool source_is_closed = check_topology(source, m_source, "source");
-    const bool reference_is_closed = check_topology(reference, m_reference, "reference");
+    const bool source_is_closed = is_sphere(source, m_source, "source");
+    const bool reference_is_closed = is_sphere(reference, m_reference, "reference");
     if(source_is_closed != reference_is_closed)
       throw Invalid_input(std::string("source and reference: one of them is closed, the other (") +
                           (source_is_closed ? "reference" : "source") + ") has a border");
@@ -97,53 +93,6 @@ public:
   }
 
 private:
-  // for closed surfaces only: those with a border are told by the order of their landmarks
-  static bool are_opposite(const Mesh_copy& source, const Mesh_copy& reference)
-  {
-    const auto volume = [](const Mesh_copy& copy) {
-      double sum = 0;
-      for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
-        for(const auto& t : split_face(copy.mesh, copy.points, f))
-        {
-          Vector_3 p[3];
-          for(int i = 0; i < 3; ++i)
-            p[i] = copy.points[copy.mesh.corner_vertex[t[i]]] - copy.points.front();
-          sum += p[0].dot(p[1].cross(p[2]));
-        }
-      return sum;
-    };
-    for(const Mesh_copy* copy : {&source, &reference})
-      if(std::find(copy->mesh.opposite.begin(), copy->mesh.opposite.end(), -1) !=
-         copy->mesh.opposite.end())
-        return false;
-    return volume(source) * volume(reference) < 0;
-  }
-
-  // whether the surface is closed
-  static bool
-  check_topology(const Mesh_copy& copy, const Cut_surface& surface, const std::string& name)
-  {
-    namespace PMP = CGAL::Polygon_mesh_processing;
-    const Cut_surface::Mesh& mesh = surface.mesh();
-    std::vector<std::size_t> component(mesh.number_of_faces());
-    const std::size_t components = PMP::connected_components(
-      mesh, boost::make_iterator_property_map(component.begin(), get(boost::face_index, mesh)));
-    if(components != 1)
-      throw Invalid_input(name + ": has " + std::to_string(components) +
-                          " connected components, but must have one");
-    std::vector<Cut_surface::Halfedge> borders;
-    PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));
-    int vertices = 0;
-    for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
-      vertices += copy.mesh.vertex_begin[v] < copy.mesh.vertex_begin[v + 1];
-    const int characteristic = vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces());
-    if(borders.size() > 1 || characteristic != 2 - int(borders.size()))
-      throw Invalid_input(name + ": has " + std::to_string(borders.size()) + " borders and genus " +
-                          std::to_string((2 - characteristic - int(borders.size())) / 2) +
-                          ", but must be a closed surface of genus 0 or a disk");
-    return borders.empty();
-  }
-
   void measure_distances()
   {
     const std::size_t n = m_source.landmarks().size();
