@@ -81,37 +81,18 @@ the run (every run has a process of its own where the system has fork).
 
 Options parse(int argc, char* argv[])
 {
-  Options o;
-  for(int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    const auto value = [&]() -> std::string {
-      if(i + 1 == argc)
-        throw std::invalid_argument(option + " needs a value");
-      return argv[++i];
-    };
-    if(option == "-h" || option == "--help")
-    {
-      std::cout << usage;
-      std::exit(ok);
-    }
-    else if(take_common_option(o, option, value))
-      continue;
-    else if(option == "--drift-bound")
-      expand(o.runs, &Settings::drift_bound, option, value(), true);
-    else if(option == "--start")
-      o.starts = split_list(value());
-    else if(option == "--baseline")
-      o.baseline = true;
-    else if(option[0] == '-')
-      throw std::invalid_argument("unknown option " + option);
-    else
-      o.files.push_back(option);
-  }
-  if(o.files.empty())
-    throw std::invalid_argument("no pair given (--help tells more)");
-  check_common_options(o);
-  return o;
+  return parse_options<Options>(argc, argv, usage, "pair",
+                                [](Options& o, const std::string& option, const auto& value) {
+                                  if(option == "--drift-bound")
+                                    expand(o.runs, &Settings::drift_bound, option, value(), true);
+                                  else if(option == "--start")
+                                    o.starts = split_list(value());
+                                  else if(option == "--baseline")
+                                    o.baseline = true;
+                                  else
+                                    return false;
+                                  return true;
+                                });
 }
 
 // ---- starts ------------------------------------------------------------------------------------

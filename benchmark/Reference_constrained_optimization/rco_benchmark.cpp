@@ -73,37 +73,18 @@ has fork).
 
 Options parse(int argc, char* argv[])
 {
-  Options o;
-  for(int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    const auto value = [&]() -> std::string {
-      if(i + 1 == argc)
-        throw std::invalid_argument(option + " needs a value");
-      return argv[++i];
-    };
-    if(option == "-h" || option == "--help")
-    {
-      std::cout << usage;
-      std::exit(ok);
-    }
-    else if(take_common_option(o, option, value))
-      continue;
-    else if(option == "--exponent")
-      expand(o.runs, &Settings::exponent, option, value());
-    else if(option == "--sharp-edges")
-      expand(o.runs, &Settings::sharp_edges, option, value());
-    else if(option == "--reference")
-      o.reference = value();
-    else if(option[0] == '-')
-      throw std::invalid_argument("unknown option " + option);
-    else
-      o.files.push_back(option);
-  }
-  if(o.files.empty())
-    throw std::invalid_argument("no mesh given (--help tells more)");
-  check_common_options(o);
-  return o;
+  return parse_options<Options>(argc, argv, usage, "mesh",
+                                [](Options& o, const std::string& option, const auto& value) {
+                                  if(option == "--exponent")
+                                    expand(o.runs, &Settings::exponent, option, value());
+                                  else if(option == "--sharp-edges")
+                                    expand(o.runs, &Settings::sharp_edges, option, value());
+                                  else if(option == "--reference")
+                                    o.reference = value();
+                                  else
+                                    return false;
+                                  return true;
+                                });
 }
 
 RCO::Result optimize(Mesh& mesh,

@@ -7,6 +7,8 @@
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 
 #include <cstddef>
+#include <cstdlib>
+#include <iostream>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -126,6 +128,39 @@ void check_common_options(const Options& o)
   if(o.parallel)
     throw std::invalid_argument("--parallel: this program was built without TBB");
 #endif
+}
+
+// Reads the command line; `take_own(options, option, value)` takes what is the driver's own, and
+// returns false for what is not. `input` is what the driver calls its files.
+template <typename Options, typename Take_own>
+Options parse_options(
+  int argc, char* argv[], const char* usage, const std::string& input, const Take_own& take_own)
+{
+  Options o;
+  for(int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    const auto value = [&]() -> std::string {
+      if(i + 1 == argc)
+        throw std::invalid_argument(option + " needs a value");
+      return argv[++i];
+    };
+    if(option == "-h" || option == "--help")
+    {
+      std::cout << usage;
+      std::exit(EXIT_SUCCESS);
+    }
+    else if(take_common_option(o, option, value) || take_own(o, option, value))
+      continue;
+    else if(option[0] == '-')
+      throw std::invalid_argument("unknown option " + option);
+    else
+      o.files.push_back(option);
+  }
+  if(o.files.empty())
+    throw std::invalid_argument("no " + input + " given (--help tells more)");
+  check_common_options(o);
+  return o;
 }
 
 // what tells one run from the others: the settings that are not the same in all

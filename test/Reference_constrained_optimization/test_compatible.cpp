@@ -182,21 +182,6 @@ double volume(const Shape& s)
   return sum;
 }
 
-bool same_bits(const Vector_3& a, const Vector_3& b)
-{
-  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
-}
-
-bool same_bits(const Shape& a, const Shape& b)
-{
-  if(a.points.size() != b.points.size() || a.faces != b.faces)
-    return false;
-  for(std::size_t i = 0; i < a.points.size(); ++i)
-    if(!same_bits(a.points[i], b.points[i]))
-      return false;
-  return true;
-}
-
 // the same faces in the same order; each may start at another of its vertices
 bool same_connectivity(const Shape& a, const Shape& b)
 {

@@ -243,21 +243,6 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
   return m;
 }
 
-bool same_bits(const Vector_3& a, const Vector_3& b)
-{
-  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
-}
-
-bool same_bits(const Shape& a, const Shape& b)
-{
-  if(a.points.size() != b.points.size() || a.faces != b.faces)
-    return false;
-  for(std::size_t i = 0; i < a.points.size(); ++i)
-    if(!same_bits(a.points[i], b.points[i]))
-      return false;
-  return true;
-}
-
 double largest_coordinate(const Shape& s)
 {
   double largest = 0;

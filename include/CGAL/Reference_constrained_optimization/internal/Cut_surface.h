@@ -14,8 +14,6 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/iterator.h>
 
-#include <boost/property_map/property_map.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -90,7 +88,6 @@ public:
   const Mesh& mesh() const { return m_mesh; }
   Mesh& mesh() { return m_mesh; }
   const Mesh::Property_map<Edge, bool>& is_cut() const { return m_is_cut; }
-  bool is_taken(Vertex v) const { return m_is_taken[v]; }
   const std::vector<Vertex>& landmarks() const { return m_landmarks; }
   const std::vector<std::vector<Halfedge>>& arcs() const { return m_arcs; }
 
@@ -104,10 +101,7 @@ public:
   void set_landmarks(const std::vector<int>& vertices)
   {
     for(const int v : vertices)
-    {
-      m_landmarks.push_back(Vertex(Vertex::size_type(v)));
-      m_is_taken[m_landmarks.back()] = true;
-    }
+      add_landmark(Vertex(Vertex::size_type(v)));
   }
 
   // one more landmark on the border: the point that lies at `length` along the border, behind the
@@ -148,15 +142,7 @@ public:
   }
 
   // length of the border from one of its landmarks to another, or all the way round to itself
-  double border_length(int from, int to) const
-  {
-    double sum = 0;
-    Halfedge h = border_halfedge_from(m_landmarks[from]);
-    sum += length(h);
-    for(; m_mesh.target(h) != m_landmarks[to]; sum += length(h))
-      h = m_mesh.next(h);
-    return sum;
-  }
+  double border_length(int from, int to) const { return length(border_between(from, to)); }
 
   bool border_is_empty() const { return m_border == Mesh::null_halfedge(); }
 
@@ -169,27 +155,10 @@ public:
     return best;
   }
 
-  double arc_length(int arc) const
-  {
-    double sum = 0;
-    for(const Halfedge h : m_arcs[arc])
-      sum += length(h);
-    return sum;
-  }
+  double arc_length(int arc) const { return length(m_arcs[arc]); }
 
   // the arc of the border from one of its landmarks to the next
-  void lay_border_arc(int from, int to)
-  {
-    std::vector<Halfedge> arc;
-    Halfedge h = border_halfedge_from(m_landmarks[from]);
-    arc.push_back(h);
-    while(m_mesh.target(h) != m_landmarks[to])
-    {
-      h = m_mesh.next(h);
-      arc.push_back(h);
-    }
-    m_arcs.push_back(arc);
-  }
+  void lay_border_arc(int from, int to) { m_arcs.push_back(border_between(from, to)); }
 
   // splits all edges between taken vertices that are not part of an arc
   void split_chords()
@@ -268,6 +237,23 @@ private:
     const Halfedge h = m_mesh.halfedge(e);
     return m_is_taken[m_mesh.source(h)] && m_is_taken[m_mesh.target(h)] && !m_is_cut[e] &&
            !m_mesh.is_border(e);
+  }
+
+  double length(const std::vector<Halfedge>& way) const
+  {
+    double sum = 0;
+    for(const Halfedge h : way)
+      sum += length(h);
+    return sum;
+  }
+
+  // the border's half-edges from one landmark on it to another, or all the way round to itself
+  std::vector<Halfedge> border_between(int from, int to) const
+  {
+    std::vector<Halfedge> way(1, border_halfedge_from(m_landmarks[from]));
+    while(m_mesh.target(way.back()) != m_landmarks[to])
+      way.push_back(m_mesh.next(way.back()));
+    return way;
   }
 
   Halfedge border_halfedge_from(Vertex v) const
