@@ -1,0 +1,76 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUAD_REGULARITY_ENERGY_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUAD_REGULARITY_ENERGY_H
+
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_elements.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * drives the four corner triangles of every quad towards one and the same isosceles right triangle:
+ * equation (7) of the paper, \f$ \sum_f \sum_{i=1}^4 \|J_{f,i}\|_F^2 + \|J_{f,i}^{-1}\|_F^2 \f$,
+ * with \f$ J_{f,i} \f$ the Jacobian of the map from an isosceles right triangle with legs
+ * \f$ l\,\bar e \f$ to the triangle of corner `i` of face `f` and the corner's two neighbours;
+ * \f$ \bar e \f$ is the mean edge length of the input mesh.
+ *
+ * Angles and edge lengths are evened out together. With \f$ l = 1 \f$ edges resist being stretched
+ * as much as being shrunk; with a large \f$ l \f$ all edges want to grow, and what shrinks an edge
+ * or flattens a corner costs most. Where irregular vertices do not let angles and lengths be right
+ * at once, `Quad_angle_energy` looks after the angles alone. Triangles of a mixed mesh are driven
+ * towards equilateral ones with sides \f$ l\,\bar e \f$.
+ *
+ * \cgalModels{ReferenceConstrainedEnergy}
+ */
+class Quad_regularity_energy
+{
+public:
+  /// model of `DistortionDensity`.
+  typedef Symmetric_Dirichlet_density Density;
+
+  /// constructs the energy. \param leg_length_factor the factor \f$ l \f$, in mean edge lengths of
+  /// the input mesh, a positive number; 5 is the paper's. \throws Invalid_input if it is not
+  /// positive and finite.
+  explicit Quad_regularity_energy(double leg_length_factor = 5)
+    : m_leg_length_factor(leg_length_factor)
+  {
+    if(!(leg_length_factor > 0) || !std::isfinite(leg_length_factor))
+      throw Invalid_input(
+        "Quad_regularity_energy: the leg length factor must be positive and finite");
+  }
+
+  /// the factor \f$ l \f$.
+  double leg_length_factor() const { return m_leg_length_factor; }
+
+  /// the density.
+  const Density& density() const { return m_density; }
+
+  /// appends the four elements of quad `f`, or the one of a triangle.
+  void append_elements(const Energy_context& context,
+                       std::size_t f,
+                       std::vector<Energy_element>& elements) const
+  {
+    internal::append_corner_elements(context, f, m_leg_length_factor * context.mean_edge_length(),
+                                     elements);
+  }
+
+private:
+  double m_leg_length_factor;
+  Density m_density;
+};
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUAD_REGULARITY_ENERGY_H
