@@ -19,6 +19,7 @@ public:
   // has_value tells all options there are, and whether a value follows
   Command_line(int argc,
                char* argv[],
+               const std::string& usage,
                std::size_t largest_number_of_names,
                const std::map<std::string, bool>& has_value)
   {
@@ -32,13 +33,14 @@ public:
       }
       const auto option = has_value.find(word);
       if(option == has_value.end())
-        throw std::runtime_error(word + " is not an option");
+        throw std::runtime_error(word + " is not an option\n" + usage);
       if(option->second && ++i == argc)
-        throw std::runtime_error(word + " wants a value");
+        throw std::runtime_error(word + " wants a value\n" + usage);
       m_values[word] = option->second ? argv[i] : "";
     }
     if(m_names.size() > largest_number_of_names)
-      throw std::runtime_error(m_names[largest_number_of_names] + " is one name too many");
+      throw std::runtime_error(m_names[largest_number_of_names] + " is one name too many\n" +
+                               usage);
   }
 
   bool has(const std::string& option) const { return m_values.count(option) > 0; }

@@ -1,8 +1,4 @@
 // Makes a quad mesh out of a triangle mesh, for quad_mesh_optimization to improve.
-//
-//   make_quad_mesh [triangles.off [quads.obj]] [--jitter J] [--seed S]
-//
-// With --jitter, vertices are shaken by up to J mean edges; another seed shakes them otherwise.
 
 #include "command_line.h"
 #include "quad_mesh_generation.h"
@@ -13,16 +9,23 @@
 #include <stdexcept>
 #include <string>
 
+const char* const usage =
+  R"(Usage: make_quad_mesh [triangles.off [quads.obj]] [--jitter J] [--seed S]
+
+  --jitter J   shakes the vertices by up to J mean edges (0 to 1, default 0)
+  --seed S     another whole number shakes them otherwise (default 0)
+)";
+
 int main(int argc, char* argv[])
 {
   try
   {
-    const Command_line arguments(argc, argv, 2, {{"--jitter", true}, {"--seed", true}});
+    const Command_line arguments(argc, argv, usage, 2, {{"--jitter", true}, {"--seed", true}});
     const std::string input = arguments.name(0, CGAL::data_file_path("meshes/elephant.off"));
     const std::string output = arguments.name(1, "quads.obj");
     const double jitter = arguments.number("--jitter", 0.);
-    if(jitter < 0)
-      throw std::runtime_error("--jitter wants a number that is not negative");
+    if(jitter < 0 || jitter > 1)
+      throw std::runtime_error("--jitter wants a number from 0 to 1");
 
     const Mesh triangles = read_mesh(input);
     if(!CGAL::is_triangle_mesh(triangles))
