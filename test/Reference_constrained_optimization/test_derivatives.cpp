@@ -328,15 +328,15 @@ random_matrix(int n, const Pairs& pairs, double smallest, Random& random, intern
     for(int i = 0; i < 16; ++i)
       root.data()[i] = random(-1, 1);
     const Eigen::Matrix4d h = root * root.transpose();
-    const Matrix_2 side = h.topRightCorner<2, 2>();
+    const Matrix_2 side = h.topRightCorner<2, 2>(), turned = side.transpose();
     add_diagonal(a, h.topLeftCorner<2, 2>());
     add_diagonal(b, h.bottomRightCorner<2, 2>());
     if(random() < 0.5)
       f.add(int(k), a, b, side);
     else
-      f.add(int(k), b, a, side.transpose());
+      f.add(int(k), b, a, turned);
     add(a, b, side);
-    add(b, a, side.transpose());
+    add(b, a, turned);
   }
   Eigen::SparseMatrix<double> matrix(2 * n, 2 * n);
   matrix.setFromTriplets(entries.begin(), entries.end());
