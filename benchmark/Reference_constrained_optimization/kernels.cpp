@@ -5,11 +5,14 @@
 // Micro-benchmarks of single steps, on patches of a bumpy torus.
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
 
+#include <Eigen/SparseCholesky>
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -148,6 +151,101 @@ void newton_step(benchmark::State& state)
   }
 }
 
+// The system of a patch of triangles (with its free vertices), or of a square of quads in which
+// opposite corners are neighbours, too; both ways to factorize it are ready for a numeric run.
+struct Factorization_scene
+{
+  typedef Eigen::SparseMatrix<double> Matrix;
+
+  int size = 0;
+  std::vector<std::array<int, 2>> pairs;
+  Block_LDLT block;
+  Matrix matrix; // its lower triangle
+  Eigen::SimplicialLDLT<Matrix, Eigen::Lower> eigen;
+
+  Factorization_scene(int number_of_faces, bool is_quad_grid)
+  {
+    if(is_quad_grid)
+    {
+      const int side = int(std::sqrt(double(number_of_faces)));
+      const auto at = [&](int i, int j) { return j * (side + 1) + i; };
+      size = (side + 1) * (side + 1);
+      for(int j = 0; j < side; ++j)
+        for(int i = 0; i < side; ++i)
+        {
+          const int v[4] = {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+          for(int a = 0; a < 4; ++a)
+            for(int b = 0; b < a; ++b)
+              pairs.push_back({{v[a], v[b]}});
+        }
+    }
+    else
+    {
+      const Mesh_copy patch = scene().patch(number_of_faces);
+      std::vector<int> variable;
+      for(const char is_border : patch.mesh.is_border_vertex)
+        variable.push_back(is_border ? -1 : size++);
+      for(int c = 0; c < patch.mesh.number_of_corners(); ++c)
+        pairs.push_back({{variable[patch.mesh.source(c)], variable[patch.mesh.target(c)]}});
+    }
+    block.analyze(size, pairs);
+    block.set_zero();
+
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](int i, int j, const Eigen::Matrix2d& values) {
+      for(int a = 0; a < 2; ++a)
+        for(int b = 0; b < 2; ++b)
+          if(2 * i + a >= 2 * j + b)
+            entries.emplace_back(2 * i + a, 2 * j + b, values(a, b));
+    };
+    Eigen::Matrix2d weight;
+    weight << 1, 0.5, 0.5, 1;
+    const auto add_diagonal = [&](int i, const Eigen::Matrix2d& values) {
+      block.add_diagonal(i, values);
+      add(i, i, values);
+    };
+    for(int i = 0; i < size; ++i)
+      add_diagonal(i, 1e-3 * weight);
+    for(std::size_t k = 0; k < pairs.size(); ++k)
+    {
+      const int a = pairs[k][0], b = pairs[k][1];
+      if(a < 0 || b < 0)
+        continue;
+      add_diagonal(a, weight);
+      add_diagonal(b, weight);
+      block.add(int(k), a, b, -weight);
+      add(a, b, -weight);
+      add(b, a, -weight);
+    }
+    matrix.resize(2 * size, 2 * size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    eigen.analyzePattern(matrix);
+  }
+};
+
+void factorization(benchmark::State& state, bool is_block, bool is_quad_grid)
+{
+  Factorization_scene s(int(state.range(0)), is_quad_grid);
+  for(auto _ : state)
+    if(is_block)
+      benchmark::DoNotOptimize(s.block.factorize(0));
+    else
+    {
+      s.eigen.factorize(s.matrix);
+      benchmark::DoNotOptimize(s.eigen.info());
+    }
+}
+
+void symbolic_factorization(benchmark::State& state, bool is_block, bool is_quad_grid)
+{
+  Factorization_scene s(int(state.range(0)), is_quad_grid);
+  for(auto _ : state)
+    if(is_block)
+      s.block.analyze(s.size, s.pairs);
+    else
+      s.eigen.analyzePattern(s.matrix);
+}
+
 // points half an edge away from where the search starts, and a little off the surface
 void closest_point(benchmark::State& state, bool is_local)
 {
@@ -176,6 +274,46 @@ BENCHMARK_CAPTURE(flattening, convex_border, false)
   ->Arg(4000)
   ->Unit(benchmark::kMillisecond);
 BENCHMARK(newton_step)->Arg(400)->Arg(1000)->Arg(4000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(factorization, block, true, false)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(factorization, eigen, false, false)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(factorization, block_quads, true, true)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(factorization, eigen_quads, false, true)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(symbolic_factorization, block, true, false)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(symbolic_factorization, eigen, false, false)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(symbolic_factorization, block_quads, true, true)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(symbolic_factorization, eigen_quads, false, true)
+  ->Arg(400)
+  ->Arg(1000)
+  ->Arg(4000)
+  ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(closest_point, local, true);
 BENCHMARK_CAPTURE(closest_point, tree, false);
 

@@ -2,16 +2,18 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Densities and their derivatives, the Newton system, the flip-free step, and planar optimization.
+// Densities and their derivatives, the factorization, the Newton system, the flip-free step, and planar optimization.
 
 #include "test_util.h"
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 
 #include <limits>
 
@@ -296,6 +298,147 @@ void test_time_of_collapse()
   Matrix_2 down = none;
   down(1, 1) = -2;
   RCO_CHECK_NEAR(internal::time_of_collapse(unit, down), 0.5, 1e-15);
+}
+
+typedef std::vector<std::array<int, 2>> Pairs;
+
+// Adds a random positive definite matrix of the given graph to `factorization`, and returns it. No
+// eigenvalue is below `smallest`.
+Eigen::SparseMatrix<double>
+random_matrix(int n, const Pairs& pairs, double smallest, Random& random, internal::Block_LDLT& f)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int i, int j, const Matrix_2& block) {
+    for(int k = 0; k < 4; ++k)
+      entries.emplace_back(2 * i + k % 2, 2 * j + k / 2, block.data()[k]);
+  };
+  const auto add_diagonal = [&](int i, const Matrix_2& block) {
+    f.add_diagonal(i, block);
+    add(i, i, block);
+  };
+  f.set_zero();
+  for(int i = 0; i < n; ++i)
+    add_diagonal(i, smallest * Matrix_2::Identity());
+  for(std::size_t k = 0; k < pairs.size(); ++k)
+  {
+    const int a = pairs[k][0], b = pairs[k][1];
+    if(a < 0 || b < 0)
+      continue;
+    Eigen::Matrix4d root;
+    for(int i = 0; i < 16; ++i)
+      root.data()[i] = random(-1, 1);
+    const Eigen::Matrix4d h = root * root.transpose();
+    const Matrix_2 side = h.topRightCorner<2, 2>(), turned = side.transpose();
+    add_diagonal(a, h.topLeftCorner<2, 2>());
+    add_diagonal(b, h.bottomRightCorner<2, 2>());
+    if(random() < 0.5)
+      f.add(int(k), a, b, side);
+    else
+      f.add(int(k), b, a, turned);
+    add(a, b, side);
+    add(b, a, turned);
+  }
+  Eigen::SparseMatrix<double> matrix(2 * n, 2 * n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+void test_factorization_of(const std::string& name,
+                           int n,
+                           const Pairs& pairs,
+                           Random& random,
+                           internal::Block_LDLT& factorization)
+{
+  const Scope scope(name + ", " + std::to_string(n) + " vertices");
+  factorization.analyze(n, pairs);
+  RCO_CHECK_EQUAL(factorization.size(), n);
+  Eigen::SparseMatrix<double> identity(2 * n, 2 * n);
+  identity.setIdentity();
+  for(int repeat = 0; repeat < 2; ++repeat)
+  {
+    const Eigen::SparseMatrix<double> matrix = random_matrix(n, pairs, 0.1, random, factorization);
+    RCO_CHECK_NEAR(factorization.trace(), matrix.diagonal().sum(), 1e-12 * factorization.trace());
+    Eigen::VectorXd right(2 * n), solution, again;
+    for(int i = 0; i < 2 * n; ++i)
+      right(i) = random(-1, 1);
+    for(const double shift : {0., 2.})
+    {
+      const Eigen::SparseMatrix<double> shifted = matrix + shift * identity;
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> reference(shifted);
+      const Eigen::VectorXd expected = reference.solve(right);
+      RCO_CHECK(factorization.factorize(shift));
+      factorization.solve(right, solution);
+      RCO_CHECK_LESS_EQUAL((shifted * solution - right).norm(), 1e-12 * right.norm());
+      RCO_CHECK_LESS_EQUAL((solution - expected).norm(), 1e-10 * expected.norm());
+      RCO_CHECK(factorization.factorize(shift));
+      again = right;
+      factorization.solve(again, again);
+      RCO_CHECK(again == solution);
+    }
+    // just one eigenvalue is negative, or none
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(matrix),
+                                                               Eigen::EigenvaluesOnly);
+    RCO_CHECK(!factorization.factorize(-1.001 * eigen.eigenvalues()(0)));
+    RCO_CHECK(factorization.factorize(-0.999 * eigen.eigenvalues()(0)));
+    Matrix_2 block;
+    const int v = int(random() * n);
+    block << 0, 1e3, 1e3, 0; // positive diagonal entries, negative determinant
+    factorization.add_diagonal(v, block);
+    RCO_CHECK(!factorization.factorize(0));
+    factorization.add_diagonal(v, -block);
+    RCO_CHECK(factorization.factorize(0)); // a failure leaves nothing behind
+    factorization.solve(right, solution);
+    RCO_CHECK_LESS_EQUAL((matrix * solution - right).norm(), 1e-12 * right.norm());
+    for(const double bad :
+        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e3})
+    {
+      Matrix_2 spoilt = Matrix_2::Zero();
+      spoilt(repeat, repeat) = bad;
+      factorization.add_diagonal(v, spoilt);
+      RCO_CHECK(!factorization.factorize(0));
+      random_matrix(n, pairs, 0.1, random, factorization);
+    }
+  }
+}
+
+void test_factorization()
+{
+  const Scope scope("Block_LDLT");
+  Random random(4);
+  internal::Block_LDLT factorization; // one for all: nothing of a graph stays for the next
+  const auto test = [&](const std::string& name, int n, const Pairs& pairs) {
+    test_factorization_of(name, n, pairs, random, factorization);
+  };
+  test("a vertex", 1, {});
+  test("no edge", 5, {{{-1, 2}}, {{3, -1}}});
+  test("an edge, thrice", 2, {{{0, 1}}, {{1, 0}}, {{0, 1}}});
+  Pairs chain, star, clique, grid;
+  for(int i = 0; i < 40; ++i)
+  {
+    chain.push_back({{(7 * i) % 41, (7 * i + 7) % 41}});
+    star.push_back({{i < 20 ? i : i + 1, 20}});
+    for(int j = 0; j < i; ++j)
+      clique.push_back({{i, j}});
+  }
+  for(int i = 0; i < 144; ++i)
+    for(const int d : {1, 11, 12, 13})
+      if(i + d < 144)
+        grid.push_back({{i, i + d}});
+  test("a chain", 41, chain);
+  test("a star", 41, star);
+  test("a clique", 40, clique);
+  test("a grid", 144, grid);
+  for(int trial = 0; trial < 60; ++trial)
+  {
+    const int n = 2 + int(random() * 60), m = int(random() * random() * 4 * n);
+    Pairs pairs;
+    for(int i = 0; i < m; ++i)
+    {
+      const int a = int(random() * n), b = int(random() * n);
+      pairs.push_back({{a, a == b ? -1 : b}});
+    }
+    test("a random graph", n, pairs);
+  }
 }
 
 void test_newton_system()
@@ -623,6 +766,7 @@ int main()
     test_exponential_mips(k);
   test_symmetric_dirichlet();
   test_time_of_collapse();
+  test_factorization();
   test_newton_system();
   test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
   test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.),

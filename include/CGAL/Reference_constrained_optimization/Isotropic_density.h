@@ -50,7 +50,7 @@ public:
   /// value at the Jacobian `J` (2x2).
   double value(const Eigen::Matrix2d& J) const
   {
-    const Decomposition d(J);
+    const Singular_values d(J);
     return derived().singular_value_energy(d.s1, d.s2);
   }
 
@@ -81,6 +81,25 @@ public:
   }
 
 private:
+  // of the similarity part (e, h) and the anti-similarity part (f, g) of J the norms q and r, whose
+  // sum and difference are the singular values
+  struct Singular_values
+  {
+    double e, f, g, h, q, r;
+    double s1, s2;
+
+    explicit Singular_values(const Eigen::Matrix2d& J)
+      : e(0.5 * (J(0, 0) + J(1, 1))),
+        f(0.5 * (J(0, 0) - J(1, 1))),
+        g(0.5 * (J(1, 0) + J(0, 1))),
+        h(0.5 * (J(1, 0) - J(0, 1))),
+        q(std::sqrt(e * e + h * h)),
+        r(std::sqrt(f * f + g * g)),
+        s1(q + r),
+        s2(q - r)
+    {}
+  };
+
   struct Decomposition
   {
     double s1, s2;
@@ -88,16 +107,13 @@ private:
 
     explicit Decomposition(const Eigen::Matrix2d& J)
     {
-      // sum and difference of the rotation angles of U and V, from the similarity part (e, h) and
-      // the anti-similarity part (f, g) of J
-      const double e = 0.5 * (J(0, 0) + J(1, 1)), f = 0.5 * (J(0, 0) - J(1, 1));
-      const double g = 0.5 * (J(1, 0) + J(0, 1)), h = 0.5 * (J(1, 0) - J(0, 1));
-      const double q = std::sqrt(e * e + h * h), r = std::sqrt(f * f + g * g);
-      s1 = q + r;
-      s2 = q - r;
-      // unit vectors of the two angles; halves are taken through the half-angle formulas
-      const double c1 = r > 0 ? f / r : 1, w1 = r > 0 ? g / r : 0; // alpha + beta
-      const double c2 = q > 0 ? e / q : 1, w2 = q > 0 ? h / q : 0; // alpha - beta
+      const Singular_values s(J);
+      s1 = s.s1;
+      s2 = s.s2;
+      // unit vectors of the sum and the difference of the rotation angles of U and V, from the two
+      // parts of J; halves are taken through the half-angle formulas
+      const double c1 = s.r > 0 ? s.f / s.r : 1, w1 = s.r > 0 ? s.g / s.r : 0; // alpha + beta
+      const double c2 = s.q > 0 ? s.e / s.q : 1, w2 = s.q > 0 ? s.h / s.q : 0; // alpha - beta
       const Eigen::Vector2d sum = half_angle(c1, w1), difference = half_angle(c2, w2);
       const double cu = sum(0) * difference(0) - sum(1) * difference(1);
       const double su = sum(1) * difference(0) + sum(0) * difference(1);
@@ -161,11 +177,10 @@ private:
       }
     }
     const Eigen::Vector4d t = b - a, s = b + a;
-    hessian.noalias() = (0.5 * twist) * t * t.transpose();
-    hessian.noalias() += (0.5 * flip) * s * s.transpose();
-    hessian.noalias() += h11 * e1 * e1.transpose();
-    hessian.noalias() += h22 * e2 * e2.transpose();
-    hessian.noalias() += h12 * (e1 * e2.transpose() + e2 * e1.transpose());
+    hessian.noalias() = (0.5 * twist * t) * t.transpose();
+    hessian.noalias() += (0.5 * flip * s) * s.transpose();
+    hessian.noalias() += (h11 * e1 + h12 * e2) * e1.transpose();
+    hessian.noalias() += (h12 * e1 + h22 * e2) * e2.transpose();
     return f.value;
   }
 

@@ -124,6 +124,7 @@ private:
     double sum = 0;
     Eigen::Vector4d gradient;
     Eigen::Matrix4d hessian;
+    Eigen::Matrix<double, 4, 2> motion[3];
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
     {
       const std::array<int, 3>& t = problem.triples[e];
@@ -137,30 +138,27 @@ private:
       }
       sum += projected_derivatives(density, J, gradient, hessian, 0);
 
-      // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i
-      Vector_2 w[3];
-      w[1] = rest.row(0);
-      w[2] = rest.row(1);
-      w[0] = -w[1] - w[2];
-      const Vector_2 g0 = gradient.head<2>(), g1 = gradient.tail<2>();
-      const Eigen::Matrix2d h00 = hessian.topLeftCorner<2, 2>(),
-                            h01 = hessian.topRightCorner<2, 2>(),
-                            h11 = hessian.bottomRightCorner<2, 2>();
-      const auto block = [&](int i, int j) -> Eigen::Matrix2d {
-        const Eigen::Matrix2d inner = w[i](0) * w[j](0) * h00 + w[i](0) * w[j](1) * h01 +
-                                      w[i](1) * w[j](0) * h01.transpose() + w[i](1) * w[j](1) * h11;
-        return problem.corner_map(e, i).transpose() * inner * problem.corner_map(e, j);
-      };
+      // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
+      // in the entries of J
+      const double w[3][2] = {{-rest(0, 0) - rest(1, 0), -rest(0, 1) - rest(1, 1)},
+                              {rest(0, 0), rest(0, 1)},
+                              {rest(1, 0), rest(1, 1)}};
       for(int i = 0; i < 3; ++i)
       {
-        const int a = variable[i], j = (i + 1) % 3, b = variable[j];
-        if(a < 0)
+        const Eigen::Matrix2d& map = problem.corner_map(e, i);
+        motion[i].topRows<2>() = w[i][0] * map;
+        motion[i].bottomRows<2>() = w[i][1] * map;
+      }
+      for(int j = 0; j < 3; ++j)
+      {
+        const int b = variable[j], i = (j + 2) % 3, a = variable[i];
+        if(b < 0)
           continue;
-        m_right.segment<2>(2 * a) -=
-          problem.corner_map(e, i).transpose() * (w[i](0) * g0 + w[i](1) * g1);
-        m_system.add_diagonal(a, block(i, i));
-        if(b >= 0)
-          m_system.add_side(int(e), i, a, b, block(i, j));
+        m_right.segment<2>(2 * b) -= motion[j].transpose() * gradient;
+        const Eigen::Matrix<double, 4, 2> bent = hessian * motion[j];
+        m_system.add_diagonal(b, motion[j].transpose() * bent);
+        if(a >= 0)
+          m_system.add_side(int(e), i, a, b, motion[i].transpose() * bent);
       }
     }
     return sum;
