@@ -235,6 +235,7 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   result.initial_energy = initial.energy / elements.size();
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
+  result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
 
   const auto finish = [&]() {
     internal::write_points(mesh, vpm, copy.points, state);
@@ -243,6 +244,7 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
     result.final_energy = final.energy / elements.size();
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
+    result.number_of_nonconvex_quads = final.nonconvex_quads;
     result.running_time = internal::seconds_since(start);
   };
   auto visitor_parameter = parameters::choose_parameter(

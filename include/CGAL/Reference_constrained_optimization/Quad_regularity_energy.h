@@ -43,12 +43,10 @@ public:
   /// the input mesh, a positive number; 5 is the paper's. \throws Invalid_input if it is not
   /// positive and finite.
   explicit Quad_regularity_energy(double leg_length_factor = 5)
-    : m_leg_length_factor(leg_length_factor)
-  {
-    if(!(leg_length_factor > 0) || !std::isfinite(leg_length_factor))
-      throw Invalid_input(
-        "Quad_regularity_energy: the leg length factor must be positive and finite");
-  }
+    : m_leg_length_factor(checked(leg_length_factor)),
+      // at the same shape of the mesh's triangles, whatever the legs of the rest triangle
+      m_density(0.02 / leg_length_factor)
+  {}
 
   /// the factor \f$ l \f$.
   double leg_length_factor() const { return m_leg_length_factor; }
@@ -66,6 +64,14 @@ public:
   }
 
 private:
+  static double checked(double factor)
+  {
+    if(!(factor > 0) || !std::isfinite(factor))
+      throw Invalid_input(
+        "Quad_regularity_energy: the leg length factor must be positive and finite");
+    return factor;
+  }
+
   double m_leg_length_factor;
   Density m_density;
 };

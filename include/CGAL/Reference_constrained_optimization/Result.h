@@ -65,6 +65,9 @@ struct Result
   /// edges at the start whose two unit face normals have a dot product below -1/2.
   std::size_t initial_number_of_fold_edges = 0;
   std::size_t number_of_fold_edges = 0; ///< the same at the end.
+  /// quads at the start that are not convex as seen along the reference's normals.
+  std::size_t initial_number_of_nonconvex_quads = 0;
+  std::size_t number_of_nonconvex_quads = 0; ///< the same at the end.
 
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;

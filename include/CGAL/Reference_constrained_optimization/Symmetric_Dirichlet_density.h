@@ -16,8 +16,8 @@ namespace Reference_constrained_optimization {
  * is the symmetric Dirichlet density \f$ D(J) = \|J\|_F^2 + \|J^{-1}\|_F^2 \f$ of the paper's
  * equation (6), not halved: 4 at an isometry.
  *
- * It is the sum of \f$ \sigma^2 + \sigma^{-2} \f$ over the signed singular values. Below
- * \f$ \sigma = 0.02 \f$ the second term is continued by its second-order Taylor polynomial: twice
+ * It is the sum of \f$ \sigma^2 + \sigma^{-2} \f$ over the signed singular values. Below a threshold
+ * of \f$ \sigma \f$ the second term is continued by its second-order Taylor polynomial: twice
  * continuously differentiable, decreasing, and finite for every Jacobian, inverted ones included.
  *
  * \cgalModels{DistortionDensity}
@@ -25,6 +25,10 @@ namespace Reference_constrained_optimization {
 class Symmetric_Dirichlet_density : public Isotropic_density<Symmetric_Dirichlet_density>
 {
 public:
+  /// constructs the density. `threshold` is where the continuation starts, a positive number without
+  /// unit.
+  explicit Symmetric_Dirichlet_density(double threshold = 0.02) : m_threshold(threshold) {}
+
   /// value at the signed singular values.
   double singular_value_energy(double s1, double s2) const
   {
@@ -50,16 +54,17 @@ private:
     double value, first, second;
   };
 
-  static Term inverse_square(double s)
+  Term inverse_square(double s) const
   {
-    const double threshold = 0.02;
-    const double at = s < threshold ? threshold : s;
+    const double at = s < m_threshold ? m_threshold : s;
     const double i = 1 / at, v = i * i, slope = -2 * v * i, bend = 6 * v * v;
-    if(s >= threshold)
+    if(s >= m_threshold)
       return {v, slope, bend};
     const double h = s - at;
     return {v + h * (slope + 0.5 * h * bend), slope + h * bend, bend};
   }
+
+  double m_threshold;
 };
 
 } // namespace Reference_constrained_optimization

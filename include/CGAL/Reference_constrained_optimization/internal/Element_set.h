@@ -26,6 +26,7 @@ public:
   {
     std::array<int, 3> vertices;
     Eigen::Matrix2d rest_inverse;
+    bool is_in_quad; // its face has more corners than it
   };
 
   template <typename Energy>
@@ -54,6 +55,7 @@ public:
           element.vertices[i] = context.vertex(f, e.corners[i]);
         }
         element.rest_inverse = e.rest.inverse();
+        element.is_in_quad = context.degree(f) > 3;
         m_elements.push_back(element);
       }
       m_begin.push_back(int(m_elements.size()));

@@ -32,25 +32,44 @@ struct Loop_parameters
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
   bool use_on_surface_steps = true;
-  int flattened_iterations = 1;    // after them, patches without trouble stay on the surface
   int on_surface_newton_steps = 2; // per proposal
 };
+
+// Sizes are counted in triangles: a quad is two.
+inline int triangles_to_faces(const Indexed_mesh& mesh, double triangles)
+{
+  const double triangles_per_face =
+    double(mesh.number_of_corners()) / double(mesh.number_of_faces()) - 2;
+  return int(triangles / triangles_per_face);
+}
 
 // Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
 // as fast as their number.
 inline Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
 {
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size =
-      (std::min)(4000, (std::max)(400, int(4.5 * std::sqrt(double(mesh.number_of_faces())))));
+  {
+    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+    selection.maximum_patch_size = triangles_to_faces(
+      mesh, (std::min)(4000., (std::max)(400., 4.5 * std::sqrt(triangles))));
+  }
   return selection;
 }
 
-inline Selection_parameters small(Selection_parameters selection)
+inline Selection_parameters small(Selection_parameters selection, const Indexed_mesh& mesh)
 {
-  const int size = 200;
+  const int size = triangles_to_faces(mesh, 200);
   if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
     selection.maximum_patch_size = size;
+  return selection;
+}
+
+// regions that are optimized on the surface
+inline Selection_parameters on_surface(Selection_parameters selection, const Indexed_mesh& mesh)
+{
+  if(selection.maximum_patch_size == 0)
+    selection.maximum_patch_size = triangles_to_faces(mesh, 1000);
+  selection.is_flattened = false;
   return selection;
 }
 

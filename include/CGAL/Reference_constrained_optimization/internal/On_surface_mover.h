@@ -119,11 +119,18 @@ private:
     return result;
   }
 
+  // R's own plane where there is one: only in it is the model of first order
+  Vector_3 tangent_normal(const Placed_vertex& v) const
+  {
+    const bool is_inside = v.on_reference.barycentric.minCoeff() > 0;
+    return is_inside ? m_reference.face_normal(v.on_reference.face) : v.normal;
+  }
+
   void linearize(const Patch& patch)
   {
     m_frames.resize(patch.vertices.size());
     for(std::size_t v = 0; v < patch.vertices.size(); ++v)
-      m_frames[v] = frame(patch.placed[v].normal);
+      m_frames[v] = frame(tangent_normal(patch.placed[v]));
     m_problem.shapes.clear();
     m_problem.corner_maps.clear();
     for(const Element_set::Element& e : patch.elements)

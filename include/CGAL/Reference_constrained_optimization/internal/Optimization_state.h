@@ -36,8 +36,9 @@ struct Optimization_state
   std::vector<char> is_free;
 };
 
-// Whether a face is turned against R, and whether an edge is folded, for vertices given by a
-// function `vertex(v)` that returns a Placed_vertex. Degenerate faces count in neither.
+// Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
+// whether an edge is folded, for vertices given by a function `vertex(v)` that returns a
+// Placed_vertex. Degenerate faces count in none.
 template <typename VertexAccess>
 Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
 {
@@ -57,6 +58,23 @@ bool is_flipped(const Indexed_mesh& mesh, const VertexAccess& vertex, int f, con
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     sum += vertex(mesh.corner_vertex[c]).normal;
   return normal.dot(sum) < 0;
+}
+
+template <typename VertexAccess>
+bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  if(mesh.degree(f) == 3)
+    return false;
+  for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+  {
+    const Placed_vertex &before = vertex(mesh.source(mesh.previous(c))),
+                        &here = vertex(mesh.source(c)), &after = vertex(mesh.target(c));
+    const Vector_3 normal =
+      (after.position - here.position).cross(before.position - here.position);
+    if(normal.dot(before.normal + here.normal + after.normal) < 0)
+      return true;
+  }
+  return false;
 }
 
 inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
@@ -83,10 +101,13 @@ double element_energy(const Density& density,
   return density.value(element_jacobian(element, vertex));
 }
 
-// cosine of the smallest angle of an element's triangle; 1 if a side has no length
+// Cosine of the smallest angle of an element's triangle; 1 if a side has no length. Angles between a
+// side and a diagonal of a quad are nothing that anybody asks about: -1 there.
 template <typename VertexAccess>
 double smallest_angle_cosine(const Element_set::Element& element, const VertexAccess& vertex)
 {
+  if(element.is_in_quad)
+    return -1;
   double largest = -1;
   for(int i = 0; i < 3; ++i)
   {
@@ -106,7 +127,8 @@ struct Global_measure
   double capped_energy = 0; // the same, each density capped
   double worst = 0;         // largest density of an element that is not inverted
   double sharpest = -1;     // largest cosine of an angle of an element
-  std::size_t flips = 0, fold_edges = 0;
+  std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
+  std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
 
 template <typename Density>
@@ -120,6 +142,7 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
   {
     normals[f] = face_normal(mesh, vertex, f);
     m.flips += is_flipped(mesh, vertex, f, normals[f]);
+    m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
   }
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     if(mesh.opposite[c] > c)

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -122,7 +123,7 @@ private:
     for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
     {
       patch.first_triangle.push_back(int(begins.size()) - 1);
-      for(const auto& t : split_face(patch.polygons, points, f))
+      for(const auto& t : split_flat(patch.polygons, points, f))
       {
         patch.split_polygon.push_back(f);
         for(const int c : t)
@@ -131,6 +132,28 @@ private:
       }
     }
     patch.split = Indexed_mesh(std::move(begins), std::move(corners), int(points.size()));
+  }
+
+  // along the shorter diagonal, unless a quad that is not convex would be folded by it
+  static std::vector<std::array<int, 3>>
+  split_flat(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+  {
+    std::vector<std::array<int, 3>> triangles = split_face(mesh, points, f);
+    if(triangles.size() == 1)
+      return triangles;
+    const auto normal = [&](const std::array<int, 3>& t) {
+      const Vector_3& o = points[mesh.corner_vertex[t[0]]];
+      const Vector_3 a = points[mesh.corner_vertex[t[1]]] - o;
+      return Vector_3(a.cross(points[mesh.corner_vertex[t[2]]] - o));
+    };
+    if(normal(triangles[0]).dot(normal(triangles[1])) < 0)
+    {
+      const int c = mesh.face_begin[f];
+      const bool was_first = triangles[0][2] == c + 2;
+      triangles = was_first ? decltype(triangles){{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}}
+                            : decltype(triangles){{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}};
+    }
+    return triangles;
   }
 
   std::vector<int> m_face_stamp, m_vertex_stamp, m_local;

@@ -109,6 +109,12 @@ public:
     return n;
   }
 
+  // not of unit length; its orientation is that of the input, also after reverse()
+  Vector_3 face_normal(int f) const
+  {
+    return (corner_point(f, 1) - corner_point(f, 0)).cross(corner_point(f, 2) - corner_point(f, 0));
+  }
+
   // turns all normals round
   void reverse()
   {

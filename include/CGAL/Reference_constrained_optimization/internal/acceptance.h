@@ -16,17 +16,17 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What a patch looks like on R: energy, flips, fold edges (inside it and across its boundary), and
-// the vertices of what is wrong.
+// What a patch looks like on R: energy, and how much is wrong in it and across its boundary.
 struct Patch_measure
 {
   double energy = 0;
-  int inner_defects = 0;    // flips, and folds of edges between two faces of the patch
+  int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
 };
 
-// Decides on what a mover proposes: first flips and fold edges, then energy, both measured on R.
+// Decides on what a mover proposes: first flips, fold edges and non-convex quads, then energy, all
+// measured on R.
 // Where the proposal fails the step is cut back, first where it does harm, then everywhere.
 class Acceptance_test
 {
@@ -68,7 +68,7 @@ public:
     m_candidate = patch.placed;
     m_needs_placing.assign(n, 1);
 
-    const int maximum_attempts = 10, local_attempts = 6;
+    const int maximum_attempts = 14, local_attempts = 10;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
     {
       place(patch, mover);
@@ -82,9 +82,11 @@ public:
         decision.accepted = true;
         return decision;
       }
+      if(defects == 0 && !m_exceeds)
+        mark_risen(patch);
       const bool has_offenders =
         std::find(m_is_offender.begin(), m_is_offender.end(), char(1)) != m_is_offender.end();
-      if((defects > 0 || m_exceeds) && has_offenders && attempt < local_attempts)
+      if(has_offenders && attempt < local_attempts)
         cut_offenders(patch, attempt);
       else
         for(int v = 0; v < n; ++v)
@@ -104,7 +106,7 @@ private:
   struct Details
   {
     std::vector<Vector_3> normals;
-    std::vector<char> flipped;     // per face
+    std::vector<char> flipped;     // per face: turned over, or a quad that is not convex
     std::vector<char> folded;      // per corner
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per element: cosine of its smallest angle
@@ -138,9 +140,10 @@ private:
     for(int f = 0; f < mesh.number_of_faces(); ++f)
     {
       details.normals[f] = face_normal(mesh, vertex, f);
-      details.flipped[f] = is_flipped(mesh, vertex, f, details.normals[f]);
+      details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f]) +
+                                is_nonconvex(mesh, vertex, f));
       m.inner_defects += details.flipped[f];
-      if(before && details.flipped[f] && !before->flipped[f])
+      if(before && details.flipped[f] > before->flipped[f])
         mark_face(mesh, f);
     }
     for(int c = 0; c < mesh.number_of_corners(); ++c)
@@ -211,6 +214,15 @@ private:
     }
   }
 
+  // where nothing is wrong and yet the energy does not fall: what rose most
+  void mark_risen(const Patch& patch)
+  {
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+      if(m_after.densities[e] > 1.5 * m_before.densities[e])
+        for(const int v : patch.elements[e].vertices)
+          m_is_offender[v] = 1;
+  }
+
   void mark_face(const Indexed_mesh& mesh, int f)
   {
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -263,6 +275,32 @@ private:
     for(int v = 0; v < int(m_is_offender.size()); ++v)
       if(m_is_offender[v])
         cut(patch, v, attempt < 3 ? 0.4 : 0.);
+    even_out(patch);
+  }
+
+  // Neighbours must not go very different parts of their ways: that shears what is between them.
+  void even_out(const Patch& patch)
+  {
+    const double largest_difference = 0.2;
+    const Indexed_mesh& mesh = patch.polygons;
+    for(bool changes = true; changes;)
+    {
+      changes = false;
+      const auto limit = [&](int v, int neighbour) {
+        const double most = m_step[neighbour] + largest_difference;
+        if(patch.is_free[v] && patch.is_free[neighbour] && m_step[v] > most)
+        {
+          m_step[v] = most;
+          m_needs_placing[v] = 1;
+          changes = true;
+        }
+      };
+      for(int c = 0; c < mesh.number_of_corners(); ++c)
+      {
+        limit(mesh.source(c), mesh.target(c));
+        limit(mesh.target(c), mesh.source(c));
+      }
+    }
   }
 
   Limits m_limits{0, 0, 0, 1, 0};

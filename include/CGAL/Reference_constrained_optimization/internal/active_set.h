@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,33 @@ std::vector<std::pair<double, int>> face_densities(const Optimization_state& sta
   return result;
 }
 
+// What only a flattening may mend: faces that are turned over, folded, or not convex, and those with
+// an element beyond `troubled`.
+template <typename Density>
+std::vector<char>
+troubled_faces(const Optimization_state& state, const Density& density, double troubled)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  std::vector<char> result(mesh.number_of_faces(), 0);
+  for(const std::pair<double, int>& d : face_densities(state, density))
+    result[d.second] = d.first > troubled;
+  std::vector<Vector_3> normals(mesh.number_of_faces());
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    normals[f] = face_normal(mesh, vertex, f);
+    if(is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f))
+      result[f] = 1;
+  }
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+  {
+    const int o = mesh.opposite[c];
+    if(o > c && is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[o]]))
+      result[mesh.corner_face[c]] = result[mesh.corner_face[o]] = 1;
+  }
+  return result;
+}
+
 // forgets among the vertices that moved those further than a ring from bad elements
 template <typename Density>
 void keep_near_bad(const Optimization_state& state,
@@ -89,6 +117,23 @@ double lower_half_mean(const Optimization_state& state, const Density& density)
   for(std::size_t i = 0; i < half; ++i)
     sum += densities[i];
   return sum / double(half);
+}
+
+// The energy if all elements had the shape of their rest triangles, scaled so that their areas add up
+// to those of the mesh as it is.
+template <typename Density>
+double rest_energy(const Optimization_state& state, const Density& density)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  double area = 0, rest_area = 0;
+  for(int e = 0; e < state.elements.size(); ++e)
+  {
+    const double rest = 1 / state.elements[e].rest_inverse.determinant();
+    area += rest * std::abs(element_jacobian(state.elements[e], vertex).determinant());
+    rest_area += rest;
+  }
+  const double scale = area > 0 ? std::sqrt(area / rest_area) : 1;
+  return double(state.elements.size()) * density.value(scale * Eigen::Matrix2d::Identity());
 }
 
 // the mean length of the edges at every vertex

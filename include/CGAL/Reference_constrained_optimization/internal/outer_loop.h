@@ -50,7 +50,8 @@ public:
       m_start(start),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
-      m_small_selection(state.mesh, small(parameters.selection)),
+      m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
+      m_on_surface_selection(state.mesh, on_surface(parameters.selection, state.mesh)),
       m_rounds(state.mesh, parameters.halo),
       m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
   {}
@@ -64,7 +65,7 @@ public:
     // the mean of the better half at most
     const double typical = lower_half_mean(m_state, m_density);
     m_cap = 10 * typical;
-    m_rest_energy = double(m_state.elements.size()) * m_density.value(Eigen::Matrix2d::Identity());
+    m_rest_energy = rest_energy(m_state, m_density);
     m_limits.worst = before.worst;
     m_limits.bad = 1.5 * typical;
     m_limits.troubled = 2 * m_limits.bad;
@@ -99,10 +100,8 @@ private:
     {
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
-      m_may_stay_on_surface =
-        m_parameters.use_on_surface_steps && int(i) >= m_parameters.flattened_iterations;
       ++m_result.number_of_iterations;
-      const bool complete = visit(m_is_active, m_selection);
+      const bool complete = visit_active();
       const Global_measure after = measure(m_state, m_density, m_cap);
       m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
       if(!complete)
@@ -110,7 +109,7 @@ private:
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
       const bool repairs = has_fallen(before.energy, after.energy) ||
-                           after.flips + after.fold_edges < before.flips + before.fold_edges;
+                           after.defects() < before.defects();
       if(!falls && repairs)
         keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
       m_is_active = faces_around(mesh, m_moved, 1);
@@ -125,7 +124,19 @@ private:
     return m_parameters.number_of_iterations > 0;
   }
 
-  // What is left to gain is what the energy has above that of a mesh whose elements are all at rest.
+  // What is bad is flattened; then all regions are optimized on the surface, where that is allowed.
+  bool visit_active()
+  {
+    if(!m_parameters.use_on_surface_steps)
+      return visit(m_is_active, m_selection, true);
+    std::vector<char> is_wanted = troubled_faces(m_state, m_density, m_limits.troubled);
+    for(std::size_t f = 0; f < is_wanted.size(); ++f)
+      is_wanted[f] = is_wanted[f] && m_is_active[f];
+    return visit(is_wanted, m_selection, true) &&
+           visit(m_is_active, m_on_surface_selection, false);
+  }
+
+  // What is left to gain is what the energy has above that of elements that are all at rest.
   bool has_fallen(double before, double after) const
   {
     const double floor = 0.01;
@@ -156,14 +167,15 @@ private:
         after += std::log(faces[i].first);
       }
       const double least_gain = 0.002 * double(n);
-      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection))
+      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection, true))
         return;
       before = after;
     }
   }
 
-  // visits the wanted faces until all are touched; false if it was cut short
-  bool visit(const std::vector<char>& is_wanted, Patch_selection& selection)
+  // visits the wanted faces, in patches that are flattened or not, until all are touched; false if it
+  // was cut short
+  bool visit(const std::vector<char>& is_wanted, Patch_selection& selection, bool flattens)
   {
     const Indexed_mesh& mesh = m_state.mesh;
     std::vector<int> seeds;
@@ -185,7 +197,7 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!solve_round(patches))
+      if(!solve_round(patches, flattens))
         return false;
     }
   }
@@ -204,7 +216,7 @@ private:
   }
 
   // false if it was cut short; what was solved by then is committed
-  bool solve_round(const std::vector<std::vector<int>>& patches)
+  bool solve_round(const std::vector<std::vector<int>>& patches, bool flattens)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
@@ -216,8 +228,7 @@ private:
       if(!stops && !(is_sequential ? may_go_on() : has_time()))
         stops = true;
       if(!stops)
-        solver.solve(patches[i], m_state, m_density, m_limits, m_drift_guard, m_may_stay_on_surface,
-                     solved[i]);
+        solver.solve(patches[i], m_state, m_density, m_limits, m_drift_guard, flattens, solved[i]);
     });
     for(Solved_patch& s : solved)
       if(!s.patch.faces.empty())
@@ -284,7 +295,7 @@ private:
   Result& m_result;
   std::chrono::steady_clock::time_point m_start;
   CGAL::Random m_random;
-  Patch_selection m_selection, m_small_selection;
+  Patch_selection m_selection, m_small_selection, m_on_surface_selection;
   Patch_rounds m_rounds;
   For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
   Face_geometry m_geometry;
@@ -293,8 +304,7 @@ private:
   std::vector<char> m_moved;                     // per vertex
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits{0, 0, 0, 1, 0};
-  bool m_may_stay_on_surface = false;
-  double m_cap = 0;
+    double m_cap = 0;
   double m_rest_energy = 0;
 };
 

@@ -31,8 +31,8 @@ struct Solved_patch
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
 };
 
-// Takes one patch through the steps of the paper: flatten, optimize, map back, accept. One solver
-// for each thread; it keeps its workspace.
+// Takes one patch through the steps of the paper: flatten, optimize, map back, accept; or moves it
+// directly on R. One solver for each thread; it keeps its workspace.
 class Patch_solver
 {
 public:
@@ -51,7 +51,7 @@ public:
              const Density& density,
              const Acceptance_test::Limits& limits,
              const Drift_guard& drift_guard,
-             bool may_stay_on_surface,
+             bool flattens,
              Solved_patch& s)
   {
     const auto start = std::chrono::steady_clock::now();
@@ -61,7 +61,7 @@ public:
       return;
     s.was_tried = true;
     drift_guard.invite(s.patch);
-    s.is_flattened = !may_stay_on_surface || is_troubled(s.patch, density, limits);
+    s.is_flattened = flattens;
     if(s.is_flattened)
     {
       improve(m_flattened_mover, state, density, limits, s);
@@ -105,30 +105,6 @@ private:
                  mover.propose_again(s.patch, m_acceptance.steps(), density);
     }
     s.optimization_time = mover.optimization_time();
-  }
-
-  // whether there is something in the patch that only a flattening may mend
-  template <typename Density>
-  static bool
-  is_troubled(const Patch& patch, const Density& density, const Acceptance_test::Limits& limits)
-  {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
-    for(const Element_set::Element& e : patch.elements)
-      if(element_energy(density, e, vertex) > limits.troubled)
-        return true;
-    const Indexed_mesh& mesh = patch.polygons;
-    std::vector<Vector_3> normals;
-    for(int f = 0; f < mesh.number_of_faces(); ++f)
-    {
-      normals.push_back(face_normal(mesh, vertex, f));
-      if(is_flipped(mesh, vertex, f, normals[f]))
-        return true;
-    }
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(mesh.opposite[c] > c &&
-         is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]))
-        return true;
-    return false;
   }
 
   Patch_builder m_builder;

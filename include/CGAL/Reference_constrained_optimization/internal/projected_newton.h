@@ -74,6 +74,7 @@ public:
     {
       if(!m_system.solve(m_right, m_direction))
         break;
+      damp(problem, u);
       const double decrease = m_right.dot(m_direction);
       if(!(decrease > tolerance * std::abs(energy)))
         break;
@@ -164,10 +165,50 @@ private:
     return sum;
   }
 
+  // Shortens the motion of the vertices of elements that would collapse on the way, so that these few
+  // do not hold back all others, unless little of the descent would remain.
+  template <typename Problem>
+  void damp(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    m_undamped = m_direction;
+    const int maximum_passes = 3; // motions that are shortened unequally may collapse others
+    for(int pass = 0; pass < maximum_passes; ++pass)
+    {
+      m_part.assign(m_size, 1.);
+      bool is_damped = false;
+      for_each_collapse(problem, u, [&](std::size_t e, double time) {
+        const double part = 0.9 * time;
+        if(!(part < 1))
+          return;
+        is_damped = true;
+        for(const int v : problem.triples[e])
+          if(m_variable[v] >= 0)
+            m_part[m_variable[v]] = (std::min)(m_part[m_variable[v]], part);
+      });
+      if(!is_damped)
+        return;
+      for(int i = 0; i < m_size; ++i)
+        m_direction.segment<2>(2 * i) *= m_part[i];
+    }
+    if(!(m_right.dot(m_direction) > 0.1 * m_right.dot(m_undamped)))
+      m_direction = m_undamped;
+  }
+
   template <typename Problem>
   double largest_flip_free_step(const Problem& problem, const std::vector<Vector_2>& u) const
   {
     double step = std::numeric_limits<double>::infinity();
+    for_each_collapse(problem, u,
+                      [&](std::size_t, double time) { step = (std::min)(step, time); });
+    return step;
+  }
+
+  // calls visit(e, t) with the part t of the motion at which element e collapses
+  template <typename Problem, typename Visit>
+  void for_each_collapse(const Problem& problem,
+                         const std::vector<Vector_2>& u,
+                         const Visit& visit) const
+  {
     const auto motion = [&](int v) -> Vector_2 {
       return m_variable[v] < 0 ? Vector_2(Vector_2::Zero())
                                : Vector_2(m_direction.segment<2>(2 * m_variable[v]));
@@ -182,15 +223,15 @@ private:
       Eigen::Matrix2d d;
       d.col(0) = problem.corner_map(e, 1) * motion(t[1]) - first;
       d.col(1) = problem.corner_map(e, 2) * motion(t[2]) - first;
-      step = (std::min)(step, time_of_collapse(shape, d));
+      visit(e, time_of_collapse(shape, d));
     }
-    return step;
   }
 
   int m_size = 0;
   Newton_system m_system;
   std::vector<int> m_variable;
-  Eigen::VectorXd m_right, m_direction;
+  Eigen::VectorXd m_right, m_direction, m_undamped;
+  std::vector<double> m_part; // per variable: what remains of its motion
 };
 
 } // namespace internal

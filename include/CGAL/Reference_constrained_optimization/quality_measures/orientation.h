@@ -101,20 +101,7 @@ std::size_t number_of_nonconvex_quads(
     copy, internal::read_measured_mesh(reference, np_reference, "reference"));
   std::size_t count = 0;
   for(int f = 0; f < m.number_of_faces(); ++f)
-  {
-    if(m.degree(f) != 4)
-      continue;
-    bool is_convex = true;
-    for(int c = m.face_begin[f]; c < m.face_begin[f + 1]; ++c)
-    {
-      const internal::Placed_vertex &a = vertex(m.source(m.previous(c))), &b = vertex(m.source(c)),
-                                    &d = vertex(m.target(c));
-      const internal::Vector_3 normal = (d.position - b.position).cross(a.position - b.position);
-      if(normal.dot(a.normal + b.normal + d.normal) < 0)
-        is_convex = false;
-    }
-    count += !is_convex;
-  }
+    count += internal::is_nonconvex(m, vertex, f);
   return count;
 }
 
