@@ -44,12 +44,22 @@ public:
     : face_begin(std::move(begins)),
       corner_vertex(std::move(vertices))
   {
-    corner_face.resize(corner_vertex.size());
-    for(int f = 0; f < number_of_faces(); ++f)
-      for(int c = face_begin[f]; c < face_begin[f + 1]; ++c)
-        corner_face[c] = f;
-    collect_vertex_corners(number_of_vertices);
+    collect_corners(number_of_vertices);
     match_opposites();
+    mark_border_vertices();
+  }
+
+  // the same for part of a mesh that has been looked at before: what is opposite is known
+  Indexed_mesh(std::vector<int> begins,
+               std::vector<int> vertices,
+               std::vector<int> opposites,
+               int number_of_vertices)
+    : face_begin(std::move(begins)),
+      corner_vertex(std::move(vertices)),
+      opposite(std::move(opposites))
+  {
+    collect_corners(number_of_vertices);
+    mark_border_vertices();
   }
 
   int number_of_faces() const { return int(face_begin.size()) - 1; }
@@ -106,8 +116,12 @@ public:
   }
 
 private:
-  void collect_vertex_corners(int number_of_vertices)
+  void collect_corners(int number_of_vertices)
   {
+    corner_face.resize(corner_vertex.size());
+    for(int f = 0; f < number_of_faces(); ++f)
+      for(int c = face_begin[f]; c < face_begin[f + 1]; ++c)
+        corner_face[c] = f;
     vertex_begin.assign(number_of_vertices + 1, 0);
     for(const int v : corner_vertex)
       ++vertex_begin[v + 1];
@@ -123,7 +137,6 @@ private:
   {
     const int n = int(corner_vertex.size());
     opposite.assign(n, -1);
-    is_border_vertex.assign(number_of_vertices(), 0);
     for(int c = 0; c < n; ++c)
     {
       const int s = source(c), t = target(c);
@@ -144,9 +157,15 @@ private:
         throw Invalid_input("the edge between vertices " + std::to_string(s) + " and " +
                             std::to_string(t) + " (face " + std::to_string(corner_face[c]) +
                             ") is not manifold");
-      if(matches == 0)
-        is_border_vertex[s] = is_border_vertex[t] = 1;
     }
+  }
+
+  void mark_border_vertices()
+  {
+    is_border_vertex.assign(number_of_vertices(), 0);
+    for(int c = 0; c < number_of_corners(); ++c)
+      if(opposite[c] < 0)
+        is_border_vertex[source(c)] = is_border_vertex[target(c)] = 1;
   }
 };
 

@@ -22,7 +22,7 @@ struct Loop_parameters
   std::size_t number_of_iterations = 30;
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
-  double energy_tolerance = 3e-3;
+  double energy_tolerance = 5e-3;
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
@@ -45,14 +45,18 @@ inline int triangles_to_faces(const Indexed_mesh& mesh, double triangles)
 
 // Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
 // as fast as their number.
+inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
+{
+  const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+  const double largest = 4000;
+  return triangles_to_faces(
+    mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
+}
+
 inline Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
 {
   if(selection.maximum_patch_size == 0)
-  {
-    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
-    selection.maximum_patch_size = triangles_to_faces(
-      mesh, (std::min)(4000., (std::max)(400., 4.5 * std::sqrt(triangles))));
-  }
+    selection.maximum_patch_size = patch_size(mesh, 4.5, 400);
   return selection;
 }
 
@@ -68,7 +72,7 @@ inline Selection_parameters small(Selection_parameters selection, const Indexed_
 inline Selection_parameters on_surface(Selection_parameters selection, const Indexed_mesh& mesh)
 {
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = triangles_to_faces(mesh, 1000);
+    selection.maximum_patch_size = patch_size(mesh, 5, 700);
   selection.is_flattened = false;
   return selection;
 }

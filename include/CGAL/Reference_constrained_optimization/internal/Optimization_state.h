@@ -69,8 +69,7 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
   {
     const Placed_vertex &before = vertex(mesh.source(mesh.previous(c))),
                         &here = vertex(mesh.source(c)), &after = vertex(mesh.target(c));
-    const Vector_3 normal =
-      (after.position - here.position).cross(before.position - here.position);
+    const Vector_3 normal = (after.position - here.position).cross(before.position - here.position);
     if(normal.dot(before.normal + here.normal + after.normal) < 0)
       return true;
   }

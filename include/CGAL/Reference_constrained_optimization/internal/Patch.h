@@ -57,7 +57,8 @@ public:
   explicit Patch_builder(const Indexed_mesh& mesh)
     : m_face_stamp(mesh.number_of_faces(), 0),
       m_vertex_stamp(mesh.number_of_vertices(), 0),
-      m_local(mesh.number_of_vertices(), -1)
+      m_local(mesh.number_of_vertices(), -1),
+      m_local_corner(mesh.number_of_faces(), -1)
   {}
 
   Patch build(const std::vector<int>& faces, const Optimization_state& state)
@@ -66,10 +67,13 @@ public:
     ++m_stamp;
     Patch patch;
     patch.faces = faces;
+    std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
     for(const int f : faces)
+    {
       m_face_stamp[f] = m_stamp;
-
-    std::vector<int> begins(1, 0), corners, corners_in_patch;
+      m_local_corner[f] = begins.back();
+      begins.push_back(begins.back() + mesh.degree(f));
+    }
     for(const int f : faces)
     {
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -87,9 +91,10 @@ public:
         corners.push_back(m_local[v]);
         const int o = mesh.opposite[c];
         const int g = o < 0 ? -1 : mesh.corner_face[o];
-        patch.outside_face.push_back(g >= 0 && m_face_stamp[g] != m_stamp ? g : -1);
+        const bool is_inside = g >= 0 && m_face_stamp[g] == m_stamp;
+        patch.outside_face.push_back(is_inside ? -1 : g);
+        opposites.push_back(is_inside ? m_local_corner[g] + o - mesh.face_begin[g] : -1);
       }
-      begins.push_back(int(corners.size()));
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         Element_set::Element element = state.elements[e];
@@ -100,7 +105,7 @@ public:
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
     }
     const int n = int(patch.vertices.size());
-    patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), n);
+    patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     for(int i = 0; i < n; ++i)
     {
       const int v = patch.vertices[i];
@@ -157,6 +162,7 @@ private:
   }
 
   std::vector<int> m_face_stamp, m_vertex_stamp, m_local;
+  std::vector<int> m_local_corner; // per face: its first corner in the patch
   int m_stamp = 0;
 };
 

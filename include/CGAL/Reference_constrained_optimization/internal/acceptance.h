@@ -47,18 +47,26 @@ public:
     Patch_measure before, after;
   };
 
+  // `is_first` says that it is the first proposal for the patch; else the last one was accepted
   template <typename Mover, typename Density>
   Decision decide(const Patch& patch,
                   const Optimization_state& state,
                   Mover& mover,
                   const Density& density,
-                  const Limits& limits)
+                  const Limits& limits,
+                  bool is_first)
   {
     Decision decision;
     const int n = int(patch.vertices.size());
     m_limits = limits;
     prepare(patch, state);
-    decision.before = measure(patch, density, patch.placed, m_before, nullptr);
+    if(is_first)
+      decision.before = measure(patch, density, patch.placed, m_before, nullptr);
+    else // what was accepted last is what there is now
+    {
+      decision.before = m_accepted;
+      std::swap(m_before, m_after);
+    }
     m_is_bad.assign(n, 0);
     for(std::size_t e = 0; e < patch.elements.size(); ++e)
       if(m_before.densities[e] > limits.bad)
@@ -80,6 +88,7 @@ public:
       if(!m_exceeds && (defects < 0 || (defects == 0 && falls)))
       {
         decision.accepted = true;
+        m_accepted = decision.after;
         return decision;
       }
       if(defects == 0 && !m_exceeds)
@@ -140,8 +149,8 @@ private:
     for(int f = 0; f < mesh.number_of_faces(); ++f)
     {
       details.normals[f] = face_normal(mesh, vertex, f);
-      details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f]) +
-                                is_nonconvex(mesh, vertex, f));
+      details.flipped[f] =
+        char(is_flipped(mesh, vertex, f, details.normals[f]) + is_nonconvex(mesh, vertex, f));
       m.inner_defects += details.flipped[f];
       if(before && details.flipped[f] > before->flipped[f])
         mark_face(mesh, f);
@@ -311,6 +320,7 @@ private:
   std::vector<Placed_vertex> m_candidate;
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
+  Patch_measure m_accepted;
 };
 
 } // namespace internal

@@ -108,8 +108,8 @@ private:
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
-      const bool repairs = has_fallen(before.energy, after.energy) ||
-                           after.defects() < before.defects();
+      const bool repairs =
+        has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       if(!falls && repairs)
         keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
       m_is_active = faces_around(mesh, m_moved, 1);
@@ -132,8 +132,7 @@ private:
     std::vector<char> is_wanted = troubled_faces(m_state, m_density, m_limits.troubled);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
-    return visit(is_wanted, m_selection, true) &&
-           visit(m_is_active, m_on_surface_selection, false);
+    return visit(is_wanted, m_selection, true) && visit(m_is_active, m_on_surface_selection, false);
   }
 
   // What is left to gain is what the energy has above that of elements that are all at rest.
@@ -304,7 +303,7 @@ private:
   std::vector<char> m_moved;                     // per vertex
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits{0, 0, 0, 1, 0};
-    double m_cap = 0;
+  double m_cap = 0;
   double m_rest_energy = 0;
 };
 

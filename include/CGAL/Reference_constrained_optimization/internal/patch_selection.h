@@ -100,8 +100,7 @@ public:
         continue;
       const bool is_exempt =
         !m_parameters.is_flattened || int(patch.size()) < m_parameters.exempt_size;
-      if(!is_exempt &&
-         !(proxy.cost(geometry.normals[f]) < m_parameters.developability_threshold))
+      if(!is_exempt && !(proxy.cost(geometry.normals[f]) < m_parameters.developability_threshold))
         continue;
       if(m_parameters.is_flattened && !keeps_disk(m_mesh, f, in_patch, vertex_in_patch))
         continue; // asked again when another neighbour joins

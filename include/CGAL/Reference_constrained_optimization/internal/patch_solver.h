@@ -89,7 +89,7 @@ private:
     {
       const auto start = std::chrono::steady_clock::now();
       const Acceptance_test::Decision decision =
-        m_acceptance.decide(s.patch, state, mover, density, limits);
+        m_acceptance.decide(s.patch, state, mover, density, limits, pass == 0);
       if(pass == 0)
         s.decision = decision;
       if(decision.accepted)

@@ -198,8 +198,7 @@ private:
   double largest_flip_free_step(const Problem& problem, const std::vector<Vector_2>& u) const
   {
     double step = std::numeric_limits<double>::infinity();
-    for_each_collapse(problem, u,
-                      [&](std::size_t, double time) { step = (std::min)(step, time); });
+    for_each_collapse(problem, u, [&](std::size_t, double time) { step = (std::min)(step, time); });
     return step;
   }
 
