@@ -38,6 +38,15 @@ faces_around(const Indexed_mesh& mesh, const std::vector<char>& is_center, int r
   return is_active;
 }
 
+inline std::vector<char> vertices_of(const Indexed_mesh& mesh, const std::vector<char>& faces)
+{
+  std::vector<char> result(mesh.number_of_vertices(), 0);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(faces[mesh.corner_face[c]])
+      result[mesh.corner_vertex[c]] = 1;
+  return result;
+}
+
 // the largest density of the elements of every face, with the face
 template <typename Density>
 std::vector<std::pair<double, int>> face_densities(const Optimization_state& state,

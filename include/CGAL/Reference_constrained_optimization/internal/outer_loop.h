@@ -130,6 +130,7 @@ private:
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection, true);
     std::vector<char> is_wanted = troubled_faces(m_state, m_density, m_limits.troubled);
+    is_wanted = faces_around(m_state.mesh, vertices_of(m_state.mesh, is_wanted), 2);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
     return visit(is_wanted, m_selection, true) && visit(m_is_active, m_on_surface_selection, false);
@@ -165,7 +166,7 @@ private:
         is_wanted[faces[i].second] = 1;
         after += std::log(faces[i].first);
       }
-      const double least_gain = 0.002 * double(n);
+      const double least_gain = 0.01 * double(n);
       if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection, true))
         return;
       before = after;
