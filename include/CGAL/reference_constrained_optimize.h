@@ -13,6 +13,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
@@ -126,7 +127,7 @@ namespace CGAL {
  *                           elements are all at rest, both with single elements capped and
  *                           without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`3e-3`}
+ *     \cgalParamDefault{`5e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch}
@@ -134,8 +135,12 @@ namespace CGAL {
  *     \cgalParamDefault{`0`: 4.5 times the square root of the number of faces, between 400 and 4000}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
- *     \cgalParamDescription{no effect yet: constrained vertices and border vertices stay where they
- *                           are}
+ *     \cgalParamDescription{whether vertices on lines slide along them: vertices of constrained edges
+ *                           along the line that these form at the start, border vertices that are
+ *                           within a tenth of the mean edge length of the reference's border along
+ *                           that. Ends, junctions and turns of a line by more than 60 degrees stay,
+ *                           and so do vertices constrained by `vertex_is_constrained_map`. With
+ *                           `false` all of them stay}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
@@ -223,9 +228,12 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
                                     internal::surface_area(copy.mesh, copy.points), surface.area());
   const internal::Element_set elements(energy, context);
   RCO::Result result;
-  internal::Optimization_state state{copy.mesh, surface, elements, {}, {}};
-  internal::collect_free_vertices(mesh, own_np, state);
+  internal::Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
+  const internal::Constraints constraints = internal::read_constraints(mesh, own_np, copy.mesh);
+  state.is_free = internal::free_vertices(copy.mesh, constraints);
   internal::place_on_reference(copy.points, surface, state, result);
+  if(loop_parameters.relax_constraints)
+    internal::Sliding_vertices(state, constraints, result);
   result.times.setup = internal::seconds_since(start);
 
   const auto& density = energy.density();

@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
+#include <CGAL/Reference_constrained_optimization/internal/sliding.h>
 
 #include <chrono>
 #include <cmath>
@@ -94,6 +95,10 @@ public:
   bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
   {
     const Vector_2& from = m_flattening.positions[v];
+    if(patch.slides(v))
+      return slide(patch, v,
+                   t * m_slide_scale[v] * m_problem.slide_direction[v].dot(m_target[v] - from),
+                   m_reference, result);
     const Vector_2 to = from + t * (m_target[v] - from);
     const Planar_location location =
       walk(patch.triangles(), m_flattening.positions, to, m_start_triangle[v]);
@@ -122,6 +127,7 @@ private:
     m_problem.rest_inverse.clear();
     m_problem.metric.clear();
     m_problem.is_free = patch.is_free;
+    find_slide_directions(patch);
     for(const Element_set::Element& e : patch.elements)
     {
       m_problem.triples.push_back(e.vertices);
@@ -139,6 +145,35 @@ private:
     }
   }
 
+  // In the plane a vertex slides in parallel to the line between its two neighbours; one unit there
+  // is m_slide_scale units of length on R, forward if it is positive.
+  void find_slide_directions(const Patch& patch)
+  {
+    const std::vector<Vector_2>& u = m_flattening.positions;
+    m_problem.slide_direction.clear();
+    if(patch.line_neighbours.empty())
+      return;
+    m_problem.slide_direction.assign(u.size(), Vector_2::Zero());
+    m_slide_scale.assign(u.size(), 0);
+    for(int v = 0; v < int(u.size()); ++v)
+    {
+      if(!patch.slides(v))
+        continue;
+      const std::array<int, 2>& next_to = patch.line_neighbours[v];
+      const Vector_2 flat = u[next_to[1]] - u[next_to[0]];
+      const Vector_3 along = patch.placed[next_to[1]].position - patch.placed[next_to[0]].position;
+      const double length = flat.norm();
+      if(!(length > 0))
+      {
+        m_problem.is_free[v] = 0;
+        continue;
+      }
+      const Vector_3 forward = patch.lines->tangent(patch.placed[v].on_line);
+      m_problem.slide_direction[v] = flat / length;
+      m_slide_scale[v] = (forward.dot(along) < 0 ? -1 : 1) * along.norm() / length;
+    }
+  }
+
   const Reference_surface& m_reference;
   Parameters m_parameters;
   Patch_flattener m_flattener;
@@ -148,6 +183,7 @@ private:
   std::vector<Vector_3> m_points;
   std::vector<Vector_2> m_target;
   std::vector<int> m_start_triangle;
+  std::vector<double> m_slide_scale;
   bool m_overlaps = false;
   double m_flattening_time = 0, m_optimization_time = 0;
 };

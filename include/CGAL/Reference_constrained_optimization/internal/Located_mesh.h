@@ -38,23 +38,13 @@ public:
 
   const Placed_vertex& operator()(int v) const { return m_state.vertices[v]; }
 
-  // which vertices of `g`, whose copy is given, may move
-  template <typename FaceGraph, typename NamedParameters>
-  static std::vector<char>
-  free_vertices(const FaceGraph& g, const NamedParameters& np, const Mesh_copy& copy)
-  {
-    Located_mesh located(copy, copy, 0);
-    collect_free_vertices(g, np, located.m_state);
-    return located.m_state.is_free;
-  }
-
 private:
   Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference, int)
     : m_surface(reference),
       m_elements(
         One_element_per_face(),
         Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(), 1, 1, 1)),
-      m_state{copy.mesh, m_surface, m_elements, {}, {}}
+      m_state{copy.mesh, m_surface, m_elements, {}, {}, {}, {}}
   {}
 
   Reference_surface m_surface;

@@ -31,6 +31,7 @@ struct Loop_parameters
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
+  bool relax_constraints = false;
   bool use_on_surface_steps = true;
   int on_surface_newton_steps = 2; // per proposal
 };

@@ -5,9 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_newton.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
+#include <CGAL/Reference_constrained_optimization/internal/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
 #include <Eigen/Core>
@@ -23,7 +23,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A patch's energy as a function of the coordinates of each vertex in its own tangent plane, to first
-// order: vertex i is at p_i + T_i u_i, and an element's shape is seen in the plane of the element.
+// order: vertex i is at p_i + T_i u_i, and an element's shape is seen in the plane of the element. The
+// second column of T_i is zero for vertices that slide along a line.
 struct Tangent_problem
 {
   typedef Eigen::Matrix<double, 3, 2> Frame;
@@ -92,6 +93,8 @@ public:
   bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
   {
     const Placed_vertex& from = patch.placed[v];
+    if(patch.slides(v))
+      return slide(patch, v, t * m_motion[v](0), m_reference, result);
     const Vector_3 way = t * (m_frames[v] * m_motion[v]);
     const Vector_3 target = from.position + way;
     const Surface_point foot = m_reference.descend(target, from.on_reference.face);
@@ -130,7 +133,10 @@ private:
   {
     m_frames.resize(patch.vertices.size());
     for(std::size_t v = 0; v < patch.vertices.size(); ++v)
-      m_frames[v] = frame(tangent_normal(patch.placed[v]));
+      if(patch.slides(int(v)))
+        m_frames[v] << patch.lines->tangent(patch.placed[v].on_line), Vector_3::Zero();
+      else
+        m_frames[v] = frame(tangent_normal(patch.placed[v]));
     m_problem.shapes.clear();
     m_problem.corner_maps.clear();
     for(const Element_set::Element& e : patch.elements)

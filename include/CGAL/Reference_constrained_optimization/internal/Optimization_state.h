@@ -7,9 +7,11 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Element_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/Slide_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -24,6 +26,30 @@ struct Placed_vertex
   Surface_point on_reference;
   Vector_3 position = Vector_3::Zero(); // differs from on_reference for constrained vertices off R
   Vector_3 normal = Vector_3::Zero();
+  Line_point on_line; // of vertices that slide
+};
+
+// Puts a vertex at its point of a line; false if R is not found there on the same sheet.
+inline bool
+place_on_line(const Slide_lines& lines, const Reference_surface& reference, Placed_vertex& vertex)
+{
+  const int face = lines[vertex.on_line.segment].face;
+  const Surface_point foot =
+    reference.descend(lines.position(vertex.on_line), face >= 0 ? face : vertex.on_reference.face);
+  const Vector_3 normal = reference.normal(foot);
+  if(!(normal.dot(vertex.normal) > 0))
+    return false;
+  vertex.on_reference = foot;
+  vertex.position = foot.position;
+  vertex.normal = normal;
+  return true;
+}
+
+// What the caller constrained.
+struct Constraints
+{
+  std::vector<char> is_constrained; // per vertex: by itself
+  std::vector<char> is_line;        // per corner: its edge is constrained or at the border
 };
 
 // The mesh on its reference: what movers read, and what accepted patches change.
@@ -34,6 +60,9 @@ struct Optimization_state
   const Element_set& elements;
   std::vector<Placed_vertex> vertices;
   std::vector<char> is_free;
+  Slide_lines lines;
+  // per vertex that slides: its two neighbours on its line in the mesh; else -1
+  std::vector<std::array<int, 2>> line_neighbours;
 };
 
 // Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and

@@ -26,7 +26,12 @@ struct Patch
                                  // is not in the patch, else -1
   std::vector<char> is_free;     // per local vertex
   int number_of_free_vertices = 0;
-  std::vector<Placed_vertex> placed;          // per local vertex, as they are now
+  std::vector<Placed_vertex> placed; // per local vertex, as they are now
+  // per local vertex that slides: its neighbours on its line, in local vertices; else -1. Empty if
+  // none slides.
+  std::vector<std::array<int, 2>> line_neighbours;
+  const Slide_lines* lines = nullptr;
+  bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   std::vector<Element_set::Element> elements; // in local vertices
 
   // the faces split into triangles, for flattening and location
@@ -113,12 +118,30 @@ public:
       patch.is_free.push_back(state.is_free[v] && is_inside);
       patch.number_of_free_vertices += patch.is_free.back();
     }
+    collect_sliding(state, patch);
     if(patch.is_split)
       split(patch);
     return patch;
   }
 
 private:
+  // all faces of a vertex that slides in the patch are in it, and so are its neighbours
+  void collect_sliding(const Optimization_state& state, Patch& patch) const
+  {
+    patch.lines = &state.lines;
+    if(state.line_neighbours.empty())
+      return;
+    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
+    {
+      const std::array<int, 2>& next_to = state.line_neighbours[patch.vertices[i]];
+      if(!patch.is_free[i] || next_to[0] < 0)
+        continue;
+      if(patch.line_neighbours.empty())
+        patch.line_neighbours.assign(patch.vertices.size(), {{-1, -1}});
+      patch.line_neighbours[i] = {{m_local[next_to[0]], m_local[next_to[1]]}};
+    }
+  }
+
   static void split(Patch& patch)
   {
     std::vector<Vector_3> points;

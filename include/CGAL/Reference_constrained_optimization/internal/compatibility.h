@@ -17,9 +17,11 @@
 
 #include <CGAL/AABB_tree.h>
 #if CGAL_VERSION_NR >= 1060000000
+#include <CGAL/AABB_segment_primitive_3.h>
 #include <CGAL/AABB_traits_3.h>
 #include <CGAL/AABB_triangle_primitive_3.h>
 #else
+#include <CGAL/AABB_segment_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #endif
@@ -32,10 +34,16 @@ namespace internal {
 template <typename Kernel, typename Iterator>
 using Triangle_tree =
   CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, CGAL::AABB_triangle_primitive_3<Kernel, Iterator>>>;
+template <typename Kernel, typename Iterator>
+using Segment_tree =
+  CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, CGAL::AABB_segment_primitive_3<Kernel, Iterator>>>;
 #else
 template <typename Kernel, typename Iterator>
 using Triangle_tree =
   CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Iterator>>>;
+template <typename Kernel, typename Iterator>
+using Segment_tree =
+  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, Iterator>>>;
 #endif
 
 } // namespace internal

@@ -23,18 +23,17 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Decides which vertices may move: those with faces, away from the border, not constrained and not
-// on a constrained edge.
+// reads the vertices and edges that are constrained
 template <typename PolygonMesh, typename NamedParameters>
-void collect_free_vertices(const PolygonMesh& g,
-                           const NamedParameters& np,
-                           Optimization_state& state)
+Constraints
+read_constraints(const PolygonMesh& g, const NamedParameters& np, const Indexed_mesh& mesh)
 {
   typedef boost::graph_traits<PolygonMesh> Graph_traits;
-  const Indexed_mesh& mesh = state.mesh;
-  state.is_free.assign(mesh.number_of_vertices(), 0);
-  for(int v = 0; v < mesh.number_of_vertices(); ++v)
-    state.is_free[v] = !mesh.is_border_vertex[v] && mesh.vertex_begin[v + 1] > mesh.vertex_begin[v];
+  Constraints constraints;
+  constraints.is_constrained.assign(mesh.number_of_vertices(), 0);
+  constraints.is_line.assign(mesh.number_of_corners(), 0);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    constraints.is_line[c] = mesh.opposite[c] < 0;
 
   if constexpr(!parameters::is_default_parameter<NamedParameters,
                                                  CGAL::internal_np::vertex_is_constrained_t>::value)
@@ -42,11 +41,7 @@ void collect_free_vertices(const PolygonMesh& g,
     const auto map = parameters::get_parameter(np, CGAL::internal_np::vertex_is_constrained);
     int i = 0;
     for(const typename Graph_traits::vertex_descriptor v : vertices(g))
-    {
-      if(get(map, v))
-        state.is_free[i] = 0;
-      ++i;
-    }
+      constraints.is_constrained[i++] = get(map, v);
   }
   if constexpr(!parameters::is_default_parameter<NamedParameters,
                                                  CGAL::internal_np::edge_is_constrained_t>::value)
@@ -61,13 +56,26 @@ void collect_free_vertices(const PolygonMesh& g,
           CGAL::halfedges_around_face(halfedge(face, g), g))
       {
         if(get(map, edge(h, g)))
-          state.is_free[mesh.corner_vertex[c]] =
-            state.is_free[mesh.corner_vertex[mesh.previous(c)]] = 0;
+          constraints.is_line[mesh.previous(c)] = 1;
         ++c;
       }
       ++f;
     }
   }
+  return constraints;
+}
+
+// Decides which vertices may move freely: those with faces, not constrained and on no constrained or
+// border edge.
+inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constraints& constraints)
+{
+  std::vector<char> is_free(mesh.number_of_vertices(), 0);
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+    is_free[v] = !constraints.is_constrained[v] && mesh.vertex_begin[v + 1] > mesh.vertex_begin[v];
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(constraints.is_line[c])
+      is_free[mesh.source(c)] = is_free[mesh.target(c)] = 0;
+  return is_free;
 }
 
 // Finds every vertex' point of R, once, by the tree, and moves free vertices onto it. A reference

@@ -26,13 +26,21 @@ struct Planar_problem
   std::vector<Eigen::Matrix2d> rest_inverse;
   std::vector<Eigen::Matrix2d> metric;
   std::vector<char> is_free; // per vertex
+  // per vertex: the unit vector along which it slides, zero if it does not; empty if none does
+  std::vector<Vector_2> slide_direction;
 
   // the shape of an element, and its derivative by a vertex
   Eigen::Matrix2d shape(std::size_t e, const std::vector<Vector_2>& u) const
   {
     return metric[e] * edges(u, triples[e]);
   }
-  const Eigen::Matrix2d& corner_map(std::size_t e, int) const { return metric[e]; }
+  Eigen::Matrix2d corner_map(std::size_t e, int i) const
+  {
+    if(slide_direction.empty())
+      return metric[e];
+    const Vector_2& d = slide_direction[triples[e][i]];
+    return d.isZero(0) ? metric[e] : Eigen::Matrix2d((metric[e] * d) * d.transpose());
+  }
 
   static Eigen::Matrix2d edges(const std::vector<Vector_2>& u, const std::array<int, 3>& t)
   {

@@ -66,6 +66,8 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
                         std::to_string(p.energy_tolerance));
   if(!choose_parameter(get_parameter(np, internal_np::use_finishing_stage), true))
     p.maximum_revisits = 0;
+  p.relax_constraints =
+    choose_parameter(get_parameter(np, CGAL::internal_np::relax_constraints), p.relax_constraints);
   p.use_on_surface_steps =
     choose_parameter(get_parameter(np, internal_np::use_on_surface_steps), p.use_on_surface_steps);
   p.selection.developability_threshold =

@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Located_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ minimum_angle_estimate(const FaceGraph& mesh,
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
   const internal::Indexed_mesh& m = copy.mesh;
   const std::vector<char> is_free =
-    internal::Located_mesh::free_vertices(mesh, internal::cgal_parameters(np), copy);
+    internal::free_vertices(m, internal::read_constraints(mesh, internal::cgal_parameters(np), m));
   Minimum_angle_estimate result;
   for(int f = 0; f < m.number_of_faces(); ++f)
   {
