@@ -39,12 +39,12 @@ namespace CGAL {
  *
  * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
- * mapped back onto the reference. After the first iteration, disks on which all is well are
- * optimized in the tangent planes of their vertices instead. A disk's new positions are kept only if, measured on the
- * reference, the number of flipped faces and folded edges falls, or does not change while the
- * energy falls. Border vertices and constrained vertices do not move, not by a bit. All other
- * vertices of the result lie on the reference. The same input and seed give the same bits for any
- * number of threads.
+ * mapped back onto the reference. Where all is well, regions are optimized in the tangent planes of
+ * their vertices instead. New positions are kept only if, measured on the reference, the number of
+ * flipped faces, folded edges and non-convex quads falls, or does not change while the energy falls.
+ * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
+ * them slide along their lines). All other vertices of the result lie on the reference. The same input
+ * and seed give the same bits for any number of threads.
  *
  * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
  * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads
@@ -123,16 +123,18 @@ namespace CGAL {
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
- *                           less than this part of what it has above the energy of a mesh whose
- *                           elements are all at rest, both with single elements capped and
- *                           without}
+ *                           less than this part of what it has above the energy of elements that
+ *                           all have the shape they have at rest, scaled to the area of the mesh,
+ *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`5e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
- *     \cgalParamDescription{the largest number of faces of a patch}
+ *     \cgalParamDescription{the largest number of faces of a patch, flattened or not}
  *     \cgalParamType{`int`}
- *     \cgalParamDefault{`0`: 4.5 times the square root of the number of faces, between 400 and 4000}
+ *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
+ *                       number of triangles, between 400 and 4000, the others 5 times, between 700
+ *                       and 4000; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
  *     \cgalParamDescription{whether vertices on lines slide along them: vertices of constrained edges
@@ -145,9 +147,9 @@ namespace CGAL {
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_on_surface_steps}
- *     \cgalParamDescription{whether, after the first iteration, patches without flips, folds and bad
- *                           elements are optimized directly on the reference, in the tangent planes
- *                           of their vertices: faster, and more accurate where steps are small.
+ *     \cgalParamDescription{whether only the surroundings of flips, folds and bad elements are
+ *                           flattened, and all regions are optimized directly on the reference, in
+ *                           the tangent planes of their vertices: faster, and more accurate.
  *                           With `false` every patch is flattened, as in the paper}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}

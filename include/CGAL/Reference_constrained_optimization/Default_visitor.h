@@ -21,7 +21,7 @@ struct Patch_report
   std::size_t number_of_faces = 0; ///< faces of the patch.
   double energy_before = 0;        ///< sum of the densities before.
   double energy_after = 0;         ///< sum of the densities after (equal if not accepted).
-  std::size_t defects_before = 0;  ///< flips and fold edges of the patch before.
+  std::size_t defects_before = 0;  ///< flips, fold edges and non-convex quads before.
   std::size_t defects_after = 0;   ///< the same after.
   bool accepted = false;           ///< whether the new positions were kept.
 };
