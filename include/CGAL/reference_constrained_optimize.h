@@ -127,13 +127,13 @@ namespace CGAL {
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`5e-3`}
+ *     \cgalParamDefault{`4e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch, flattened or not}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
- *                       number of triangles, between 400 and 4000, the others 5 times, between 700
+ *                       number of triangles, between 400 and 4000, the others the same, between 700
  *                       and 4000; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}

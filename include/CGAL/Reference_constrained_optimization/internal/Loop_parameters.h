@@ -22,7 +22,7 @@ struct Loop_parameters
   std::size_t number_of_iterations = 30;
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
-  double energy_tolerance = 5e-3;
+  double energy_tolerance = 4e-3;
   double movement_tolerance = 0.02; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
@@ -73,7 +73,7 @@ inline Selection_parameters small(Selection_parameters selection, const Indexed_
 inline Selection_parameters on_surface(Selection_parameters selection, const Indexed_mesh& mesh)
 {
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = patch_size(mesh, 5, 700);
+    selection.maximum_patch_size = patch_size(mesh, 4.5, 700);
   selection.is_flattened = false;
   return selection;
 }
