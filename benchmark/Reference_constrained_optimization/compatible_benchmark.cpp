@@ -3,22 +3,22 @@
 
 #include "Monotonicity_visitor.h"
 #include "arap_baseline.h"
+#include "library_call.h"
 #include "meshes.h"
+#include "promises.h"
 #include "report.h"
+#include "result_columns.h"
 #include "run_apart.h"
 #include "settings.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/reference_constrained_optimize.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdlib>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
@@ -142,23 +142,11 @@ double seconds_since(std::chrono::steady_clock::time_point start)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Mesh read_part(const std::string& file)
-{
-  try
-  {
-    return read(file);
-  }
-  catch(const std::exception& e)
-  {
-    throw std::runtime_error(file + " " + e.what());
-  }
-}
-
 Pair read_pair(const std::string& folder, const std::string& start)
 {
   Pair pair;
-  pair.source = read_part(folder + "/Q.off");
-  pair.reference = read_part(folder + "/R.off");
+  pair.source = read_or_name(folder + "/Q.off");
+  pair.reference = read_or_name(folder + "/R.off");
   if(start == landmarks_start)
   {
     const auto landmarks = read_landmarks(folder + "/landmarks.txt", pair.source, pair.reference);
@@ -167,38 +155,25 @@ Pair read_pair(const std::string& folder, const std::string& start)
     pair.map_seconds = seconds_since(begin);
   }
   else
-    pair.start = read_part(exists(folder + "/" + start) ? folder + "/" + start : start);
+    pair.start = read_or_name(exists(folder + "/" + start) ? folder + "/" + start : start);
   return pair;
 }
 
 // ---- one run -----------------------------------------------------------------------------------
 
-RCO::Result optimize(Mesh& mesh,
-                     const Pair& pair,
-                     double edge_length,
-                     const Settings& s,
-                     const Options& o,
-                     Monotonicity_visitor& visitor)
+RCO::Result optimize_map(Mesh& mesh,
+                         const Pair& pair,
+                         double edge_length,
+                         const Settings& s,
+                         const Options& o,
+                         Monotonicity_visitor& visitor)
 {
-  namespace parameters = CGAL::parameters;
   const RCO::Compatible_remeshing_energy energy(pair.source);
   const auto optimize_with = [&](const auto& own) {
-    const auto np = own.energy_tolerance(s.tolerance)
-                      .maximum_patch_size(s.patch_size)
-                      .use_on_surface_steps(!o.plain)
-                      .use_finishing_stage(!o.plain)
-                      .number_of_iterations(s.iterations)
-                      .random_seed(s.seed)
-                      .maximum_running_time(s.time_limit)
-                      .visitor(std::ref(visitor));
-#ifdef CGAL_LINKED_WITH_TBB
-    if(o.parallel)
-      return CGAL::reference_constrained_optimize<CGAL::Parallel_tag>(mesh, pair.reference, energy,
-                                                                      np);
-#endif
-    return CGAL::reference_constrained_optimize(mesh, pair.reference, energy, np);
+    return optimize(mesh, pair.reference, energy, with_common_settings(own, s, o, visitor),
+                    o.parallel);
   };
-  const auto own = parameters::developability_threshold(s.developability);
+  const auto own = CGAL::parameters::developability_threshold(s.developability);
   return s.drift_bound < 0 ? optimize_with(own)
                            : optimize_with(own.drift_bound(s.drift_bound * edge_length));
 }
@@ -218,11 +193,6 @@ std::vector<std::vector<std::size_t>> faces_of(const Mesh& mesh)
   return result;
 }
 
-struct Defects_in_and_out
-{
-  RCO::Orientation_defects in, out;
-};
-
 // what does not hold of the promises, in words
 std::string broken_promises(const Pair& pair,
                             const Mesh& output,
@@ -230,29 +200,13 @@ std::string broken_promises(const Pair& pair,
                             std::size_t monotonicity_violations)
 {
   const Mesh& input = pair.start;
-  std::size_t moved = 0;
-  for(const Mesh::Vertex_index v : input.vertices())
-    moved += input.is_border(v) && input.point(v) != output.point(v);
-  const auto distance = RCO::distance_to_reference(
-    output, pair.reference, CGAL::parameters::default_values(), CGAL::parameters::default_values(),
-    [&](Mesh::Vertex_index v) { return !input.is_border(v); });
-
-  std::vector<std::string> broken;
-  if(monotonicity_violations > 0)
-    broken.push_back(std::to_string(monotonicity_violations) + " patches not monotone");
-  if(!distance.is_on_reference())
-    broken.push_back("vertex " + std::to_string(distance.vertex) + " off the reference");
-  if(moved > 0)
-    broken.push_back(std::to_string(moved) + " fixed vertices moved");
-  if(defects.out.total() > defects.in.total())
-    broken.push_back("flips and folds rose");
-  if(output.number_of_vertices() != pair.source.number_of_vertices() ||
-     faces_of(output) != faces_of(pair.source))
-    broken.push_back("connectivity differs from that of Q");
-  std::string text;
-  for(const std::string& b : broken)
-    text += (text.empty() ? "" : "; ") + b;
-  return text;
+  Broken_promises broken;
+  broken.check_run(input, output, pair.reference, defects, monotonicity_violations,
+                   [&](Mesh::Vertex_index v) { return !input.is_border(v); });
+  broken.add_if(output.number_of_vertices() != pair.source.number_of_vertices() ||
+                  faces_of(output) != faces_of(pair.source),
+                "connectivity differs from that of Q");
+  return broken.text();
 }
 
 std::string describe(const Settings& s, const Options& o)
@@ -285,7 +239,8 @@ Row run(const std::string& folder,
   std::string status = "-";
   if(s)
   {
-    const RCO::Result r = optimize(mesh, pair, drift_in.reference_mean_edge_length, *s, o, visitor);
+    const RCO::Result r =
+      optimize_map(mesh, pair, drift_in.reference_mean_edge_length, *s, o, visitor);
     iterations = double(r.number_of_iterations);
     patches_per_iteration = iterations > 0 ? double(r.number_of_patches) / iterations : 0;
     seconds = r.running_time;
@@ -298,9 +253,6 @@ Row run(const std::string& folder,
     seconds = seconds_since(begin);
   }
   const double memory = peak_memory();
-  double factorization = unknown;
-  if(mesh.number_of_vertices() <= RCO::factorization_time_vertex_limit)
-    factorization = RCO::factorization_time(mesh);
 
   const std::string base = base_name(folder), start_name = base_name(start);
   const std::string settings = s ? describe(*s, o) : "";
@@ -327,25 +279,15 @@ Row run(const std::string& folder,
   row.add("distortion_max", "max", out.maximum, 1);
   const Defects_in_and_out defects = {RCO::orientation_defects(pair.start, pair.reference),
                                       RCO::orientation_defects(mesh, pair.reference)};
-  row.add("flips_in", "flips", double(defects.in.number_of_flips));
-  row.add("flips_out", "flips", double(defects.out.number_of_flips));
-  row.add("folds_in", "folds", double(defects.in.number_of_fold_edges));
-  row.add("folds_out", "folds", double(defects.out.number_of_fold_edges));
-  const auto add_drift = [&](const RCO::Drift& drift, const std::string& when) {
-    row.add("drift_mesh_to_reference_" + when, "drift " + when, drift.relative_mesh_to_reference(),
-            2);
-    row.add("drift_reference_to_mesh_" + when, "drift " + when, drift.relative_reference_to_mesh(),
-            2);
-  };
-  add_drift(drift_in, "in");
-  add_drift(RCO::drift(mesh, pair.reference), "out");
+  add_flips_and_folds(row, defects);
+  add_drift(row, drift_in, "in");
+  add_drift(row, RCO::drift(mesh, pair.reference), "out");
   row.add("status", "status", status);
   row.add("n_out", "N_out", iterations);
   row.add("n_in", "N_in", patches_per_iteration, 1);
   row.add("time_s", "s", seconds, 2);
   row.add("map_s", "map s", pair.map_seconds, 2);
-  row.add("factorization_ms", "T_F ms", 1e3 * factorization, 1);
-  row.add("time_over_factorization", "time/T_F", seconds / factorization, 1);
+  add_factorization(row, mesh, seconds);
   row.add("peak_memory_mb", "MB", memory, 0);
 
   if(o.check)

@@ -8,6 +8,7 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <cstddef>
+#include <exception>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,19 @@ inline Mesh read(const std::string& file)
   if(!CGAL::IO::read_polygon_mesh(file, mesh))
     throw std::runtime_error("cannot be read as a polygon mesh");
   return mesh;
+}
+
+// the same for one of several files of a run: the message names it
+inline Mesh read_or_name(const std::string& file)
+{
+  try
+  {
+    return read(file);
+  }
+  catch(const std::exception& e)
+  {
+    throw std::runtime_error(file + " " + e.what());
+  }
 }
 
 // writes <folder>/<name>.off with all digits; blanks in the name become underscores

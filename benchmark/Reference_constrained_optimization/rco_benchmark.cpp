@@ -2,20 +2,20 @@
 // combination of settings. --help tells the rest.
 
 #include "Monotonicity_visitor.h"
+#include "library_call.h"
 #include "meshes.h"
+#include "promises.h"
 #include "report.h"
+#include "result_columns.h"
 #include "run_apart.h"
 #include "settings.h"
 
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/reference_constrained_optimize.h>
 
 #include <cstddef>
-#include <cstdlib>
-#include <functional>
 #include <iostream>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -87,32 +87,6 @@ Options parse(int argc, char* argv[])
                                 });
 }
 
-RCO::Result optimize(Mesh& mesh,
-                     const Mesh& reference,
-                     const Edge_map& is_constrained,
-                     const Settings& s,
-                     const Options& o,
-                     Monotonicity_visitor& visitor)
-{
-  namespace parameters = CGAL::parameters;
-  const auto np = parameters::developability_threshold(s.developability)
-                    .energy_tolerance(s.tolerance)
-                    .maximum_patch_size(s.patch_size)
-                    .use_on_surface_steps(!o.plain)
-                    .use_finishing_stage(!o.plain)
-                    .number_of_iterations(s.iterations)
-                    .random_seed(s.seed)
-                    .maximum_running_time(s.time_limit)
-                    .edge_is_constrained_map(is_constrained)
-                    .visitor(std::ref(visitor));
-  const RCO::Minimum_angle_energy energy(s.exponent);
-#ifdef CGAL_LINKED_WITH_TBB
-  if(o.parallel)
-    return CGAL::reference_constrained_optimize<CGAL::Parallel_tag>(mesh, reference, energy, np);
-#endif
-  return CGAL::reference_constrained_optimize(mesh, reference, energy, np);
-}
-
 // what does not hold of the promises, in words
 std::string broken_promises(const Mesh& input,
                             const Mesh& output,
@@ -124,29 +98,14 @@ std::string broken_promises(const Mesh& input,
   for(const Mesh::Edge_index e : input.edges())
     if(input.is_border(e) || is_constrained[e])
       is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
-  std::size_t moved = 0;
-  for(const Mesh::Vertex_index v : input.vertices())
-    moved += (is_fixed[v] || input.is_isolated(v)) && input.point(v) != output.point(v);
-  const auto distance = RCO::distance_to_reference(
-    output, reference, CGAL::parameters::default_values(), CGAL::parameters::default_values(),
-    [&](Mesh::Vertex_index v) { return !is_fixed[v]; });
-
-  std::vector<std::string> broken;
-  if(monotonicity_violations > 0)
-    broken.push_back(std::to_string(monotonicity_violations) + " patches not monotone");
-  if(!distance.is_on_reference())
-    broken.push_back("vertex " + std::to_string(distance.vertex) + " off the reference");
-  if(moved > 0)
-    broken.push_back(std::to_string(moved) + " fixed vertices moved");
-  if(RCO::angle_statistics(output).minimum < RCO::angle_statistics(input).minimum)
-    broken.push_back("minimum angle fell");
-  if(RCO::orientation_defects(output, reference).total() >
-     RCO::orientation_defects(input, reference).total())
-    broken.push_back("flips and folds rose");
-  std::string text;
-  for(const std::string& b : broken)
-    text += (text.empty() ? "" : "; ") + b;
-  return text;
+  const Defects_in_and_out defects = {RCO::orientation_defects(input, reference),
+                                      RCO::orientation_defects(output, reference)};
+  Broken_promises broken;
+  broken.check_run(input, output, reference, defects, monotonicity_violations,
+                   [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); });
+  broken.add_if(RCO::angle_statistics(output).minimum < RCO::angle_statistics(input).minimum,
+                "minimum angle fell");
+  return broken.text();
 }
 
 std::string describe(const Settings& s, const Options& o)
@@ -174,11 +133,12 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
     CGAL::Polygon_mesh_processing::detect_sharp_edges(mesh, s.sharp_edges, is_constrained);
 
   Monotonicity_visitor visitor;
-  const RCO::Result r = optimize(mesh, reference, is_constrained, s, o, visitor);
+  const auto np = with_common_settings(CGAL::parameters::developability_threshold(s.developability),
+                                       s, o, visitor)
+                    .edge_is_constrained_map(is_constrained);
+  const RCO::Result r =
+    optimize(mesh, reference, RCO::Minimum_angle_energy(s.exponent), np, o.parallel);
   const double memory = peak_memory();
-  double factorization = std::numeric_limits<double>::quiet_NaN();
-  if(mesh.number_of_vertices() <= RCO::factorization_time_vertex_limit)
-    factorization = RCO::factorization_time(mesh);
 
   const std::string base = base_name(file);
   const std::string settings = describe(s, o);
@@ -199,41 +159,26 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
   const RCO::Drift drift = RCO::drift(mesh, reference);
   row.add("drift_mesh_to_reference", "drift", drift.relative_mesh_to_reference(), 3);
   row.add("drift_reference_to_mesh", "drift", drift.relative_reference_to_mesh(), 3);
-  row.add("flips_in", "flips", double(r.initial_number_of_flips));
-  row.add("flips_out", "flips", double(r.number_of_flips));
-  row.add("folds_in", "folds", double(r.initial_number_of_fold_edges));
-  row.add("folds_out", "folds", double(r.number_of_fold_edges));
-  row.add("status", "status", name(r.status));
+  add_flips_and_folds(row, {{r.initial_number_of_flips, r.initial_number_of_fold_edges},
+                            {r.number_of_flips, r.number_of_fold_edges}});
+  add_iterations(row, r);
 
-  const auto share = [](double part, double all) { return all > 0 ? 100 * part / all : 0; };
   const double patches = double(r.number_of_patches);
   const double flattened = double(r.conformal_flattenings + r.convex_border_flattenings);
   const double tried = flattened + double(r.failed_flattenings);
-  row.add("n_out", "N_out", double(r.number_of_iterations));
-  row.add("n_in", "N_in", r.number_of_iterations > 0 ? patches / double(r.number_of_iterations) : 0,
-          1);
   row.add("mean_patch_size", "faces", patches > 0 ? r.sum_of_patch_sizes / patches : 0, 1);
-  row.add("accepted_percent", "accepted %", share(double(r.number_of_accepted_patches), patches),
+  add_accepted(row, r);
+  row.add("conformal_percent", "flattening %", percentage(double(r.conformal_flattenings), tried),
           1);
-  row.add("conformal_percent", "flattening %", share(double(r.conformal_flattenings), tried), 1);
   row.add("convex_border_percent", "flattening %",
-          share(double(r.convex_border_flattenings), tried), 1);
-  row.add("failed_percent", "flattening %", share(double(r.failed_flattenings), tried), 1);
-  row.add("overlapping_percent", "flattening %", share(double(r.overlapping_flattenings), tried),
-          1);
+          percentage(double(r.convex_border_flattenings), tried), 1);
+  row.add("failed_percent", "flattening %", percentage(double(r.failed_flattenings), tried), 1);
+  row.add("overlapping_percent", "flattening %",
+          percentage(double(r.overlapping_flattenings), tried), 1);
   row.add("mean_flattening_distortion", "SD",
           flattened > 0 ? r.sum_of_flattening_distortion / flattened : 0, 2);
-  const RCO::Stage_times& t = r.times;
-  const double all = t.setup + t.selection + t.flattening + t.optimization + t.acceptance;
-  row.add("setup_percent", "stages %", share(t.setup, all));
-  row.add("selection_percent", "stages %", share(t.selection, all));
-  row.add("flattening_percent", "stages %", share(t.flattening, all));
-  row.add("optimization_percent", "stages %", share(t.optimization, all));
-  row.add("acceptance_percent", "stages %", share(t.acceptance, all));
-  row.add("time_s", "s", r.running_time, 2);
-  row.add("factorization_ms", "T_F ms", 1e3 * factorization, 1);
-  row.add("time_over_factorization", "time/T_F", r.running_time / factorization, 1);
-  row.add("us_per_vertex", "us/V", 1e6 * r.running_time / double(mesh.number_of_vertices()), 1);
+  add_stages(row, r.times);
+  add_times(row, mesh, r.running_time);
   row.add("peak_memory_mb", "MB", memory, 0);
 
   if(o.check)

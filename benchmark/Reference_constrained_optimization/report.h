@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 // A value of a row. The table shows the values of successive fields with the same heading together.
@@ -78,19 +77,30 @@ private:
                      const std::string& heading,
                      const std::string& value)
   {
-    static const std::vector<std::pair<std::string, std::size_t>> widths = {
-      {"mesh", 20},     {"pair", 18}, {"start", 11},      {"method", 6},     {"settings", 10},
-      {"V", 6},         {"F", 6},     {"theta in", 15},   {"theta out", 15}, {"mean", 11},
-      {"median", 6},    {"p99", 6},   {"max", 7},         {"drift", 11},     {"drift in", 9},
-      {"drift out", 9}, {"flips", 7}, {"folds", 7},       {"status", 15},    {"N_out", 5},
-      {"N_in", 6},      {"faces", 6}, {"accepted %", 10}, {"SD", 5},         {"flattening %", 18},
-      {"stages %", 14}, {"s", 7},     {"T_F ms", 7},      {"time/T_F", 8},   {"us/V", 6},
-      {"MB", 5}};
+    struct Width
+    {
+      std::size_t width;
+      std::vector<std::string> headings;
+    };
+    static const std::vector<Width> widths = {
+      {5, {"N_out", "SD", "MB"}},
+      {6, {"method", "V", "F", "median", "p99", "off", "N_in", "faces", "us/V"}},
+      {7, {"max", "flips", "folds", "s", "T_F ms"}},
+      {8, {"time/T_F"}},
+      {9, {"nonconvex", "drift in", "drift out"}},
+      {10, {"settings", "accepted %"}},
+      {11, {"start", "mean", "drift"}},
+      {12, {"planarity in", "planarity out"}},
+      {14, {"stages %"}},
+      {15, {"theta in", "theta out", "edges in", "edges out", "status"}},
+      {17, {"energy"}},
+      {18, {"pair", "flattening %"}},
+      {20, {"mesh"}},
+      {22, {"angles in", "angles out"}}};
     std::size_t width = heading.size();
-    for(const auto& w : widths)
-      if(w.first == heading)
-        width = w.second;
-    width = (std::max)(width, heading.size());
+    for(const Width& w : widths)
+      if(std::find(w.headings.begin(), w.headings.end(), heading) != w.headings.end())
+        width = (std::max)(width, w.width);
     // numbers to the right; a value that is too long pushes the rest of its row
     const bool is_left = values.empty() || heading == "status" || heading == "settings" ||
                          heading == "start" || heading == "method";

@@ -1,0 +1,57 @@
+#ifndef RCO_BENCHMARK_PROMISES_H
+#define RCO_BENCHMARK_PROMISES_H
+
+// What --check verifies in all drivers.
+
+#include "meshes.h"
+
+#include <CGAL/Reference_constrained_optimization/quality_measures.h>
+
+#include <cstddef>
+#include <string>
+
+struct Defects_in_and_out
+{
+  CGAL::Reference_constrained_optimization::Orientation_defects in, out;
+};
+
+// what does not hold of the promises, in words
+class Broken_promises
+{
+public:
+  void add_if(bool is_broken, const std::string& words)
+  {
+    if(is_broken)
+      m_text += (m_text.empty() ? "" : "; ") + words;
+  }
+
+  // what every run promises; `is_free` tells the vertices that may move
+  template <typename Is_free>
+  void check_run(const Mesh& input,
+                 const Mesh& output,
+                 const Mesh& reference,
+                 const Defects_in_and_out& defects,
+                 std::size_t monotonicity_violations,
+                 const Is_free& is_free)
+  {
+    std::size_t moved = 0;
+    for(const Mesh::Vertex_index v : input.vertices())
+      moved += !is_free(v) && input.point(v) != output.point(v);
+    const auto none = CGAL::parameters::default_values();
+    const auto distance = CGAL::Reference_constrained_optimization::distance_to_reference(
+      output, reference, none, none, is_free);
+    add_if(monotonicity_violations > 0,
+           std::to_string(monotonicity_violations) + " patches not monotone");
+    add_if(!distance.is_on_reference(),
+           "vertex " + std::to_string(distance.vertex) + " off the reference");
+    add_if(moved > 0, std::to_string(moved) + " fixed vertices moved");
+    add_if(defects.out.total() > defects.in.total(), "flips and folds rose");
+  }
+
+  const std::string& text() const { return m_text; }
+
+private:
+  std::string m_text;
+};
+
+#endif // RCO_BENCHMARK_PROMISES_H
