@@ -246,12 +246,13 @@ inline Shape equilateral_grid(int nx, int ny, double edge = 1)
 }
 
 // A strip of triangles around the z-axis: radius and height as functions of the row. `turn` is the
-// angle that it covers; all round, the last column is the first.
+// angle that it covers; all round, the last column is the first. Squares are split or not.
 inline Shape revolved(int columns,
                       int rows,
                       const std::function<double(double)>& radius,
                       const std::function<double(double)>& height,
-                      double turn = 2 * pi)
+                      double turn = 2 * pi,
+                      bool quads = false)
 {
   Shape s;
   const bool closed = std::abs(turn - 2 * pi) < 1e-12;
@@ -265,14 +266,19 @@ inline Shape revolved(int columns,
   const auto at = [&](int i, int j) { return j * n + i % n; };
   for(int j = 0; j < rows; ++j)
     for(int i = 0; i < columns; ++i)
-      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+      if(quads)
+        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      else
+        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
   return s;
 }
 
-inline Shape cylinder(int columns, int rows, double radius, double height, double turn = 2 * pi)
+inline Shape cylinder(
+  int columns, int rows, double radius, double height, double turn = 2 * pi, bool quads = false)
 {
   return revolved(
-    columns, rows, [=](double) { return radius; }, [=](double t) { return height * t; }, turn);
+    columns, rows, [=](double) { return radius; }, [=](double t) { return height * t; }, turn,
+    quads);
 }
 
 // part of a circular cone whose sides make `half_angle` with the axis
@@ -316,7 +322,7 @@ inline Shape ramp(int columns, int rows, double turns, double rise = 0.05)
   return s;
 }
 
-inline Shape torus(int columns, int rows, double big = 1, double small = 0.4)
+inline Shape torus(int columns, int rows, double big = 1, double small = 0.4, bool quads = false)
 {
   Shape s;
   for(int j = 0; j < rows; ++j)
@@ -329,7 +335,10 @@ inline Shape torus(int columns, int rows, double big = 1, double small = 0.4)
   const auto at = [&](int i, int j) { return (j % rows) * columns + i % columns; };
   for(int j = 0; j < rows; ++j)
     for(int i = 0; i < columns; ++i)
-      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+      if(quads)
+        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      else
+        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
   return s;
 }
 
@@ -397,8 +406,8 @@ inline Shape icosphere(int levels)
   return s;
 }
 
-// a cube of n times n squares a side
-inline Shape cube(int n)
+// a cube of n times n squares a side, split or not
+inline Shape cube(int n, bool quads = false)
 {
   Shape s;
   std::map<std::array<int, 3>, int> index;
@@ -420,11 +429,24 @@ inline Shape cube(int n)
             p[(axis + 2) % 3] = j + dj;
             return vertex(p);
           };
-          if(high)
+          if(quads && high)
+            s.faces.push_back({at(0, 0), at(1, 0), at(1, 1), at(0, 1)});
+          else if(quads)
+            s.faces.push_back({at(0, 0), at(0, 1), at(1, 1), at(1, 0)});
+          else if(high)
             s.quad(at(0, 0), at(1, 0), at(1, 1), at(0, 1), (i + j) % 2 == 1);
           else
             s.quad(at(0, 0), at(0, 1), at(1, 1), at(1, 0), (i + j) % 2 == 1);
         }
+  return s;
+}
+
+// a cube's squares on the unit sphere: quads with 8 irregular vertices
+inline Shape cube_sphere(int n)
+{
+  Shape s = cube(n, true);
+  for(Vector_3& p : s.points)
+    p = (p - Vector_3(0.5, 0.5, 0.5)).normalized();
   return s;
 }
 
@@ -472,6 +494,31 @@ inline Shape joined(const Shape& a, const Shape& b, const Vector_3& shift)
     for(int& v : f)
       v += int(a.points.size());
     s.faces.push_back(f);
+  }
+  return s;
+}
+
+// the same with every face oriented the other way
+inline Shape turned_round(const Shape& shape)
+{
+  Shape s = shape;
+  for(std::vector<int>& f : s.faces)
+    std::reverse(f.begin(), f.end());
+  return s;
+}
+
+// with the given quads split into triangles
+inline Shape split(const Shape& shape, const std::function<bool(int)>& is_split)
+{
+  Shape s;
+  s.points = shape.points;
+  for(int i = 0; i < int(shape.faces.size()); ++i)
+  {
+    const std::vector<int>& f = shape.faces[i];
+    if(f.size() == 4 && is_split(i))
+      s.quad(f[0], f[1], f[2], f[3], i % 2 == 1);
+    else
+      s.faces.push_back(f);
   }
   return s;
 }
