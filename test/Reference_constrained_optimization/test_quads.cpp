@@ -444,11 +444,7 @@ void test_plane_recovery()
                     2 * (r * r + 1 / (r * r)));
     }
     regular_again(optimized(rough, fine, RCO::Quad_angle_energy(1), options), std::exp(2.));
-    // This should be as near as the others, but ends early: with energies of 1e12 at the start a
-    // Newton direction that does not descend ends the work on the one patch. Known; tighten when
-    // that is mended.
-    regular_again(optimized(rough, fine, RCO::Quad_angle_energy(2), options), std::exp(4.), 1,
-                  0.15);
+    regular_again(optimized(rough, fine, RCO::Quad_angle_energy(2), options), std::exp(4.));
   }
 }
 
@@ -551,7 +547,7 @@ Outcome invariants(const Case& c, int which, const Energy& energy, const Options
     RCO_CHECK_EQUAL(defects_before(out.result), std::size_t(0));
   RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
   if(which == 2)
-    RCO_CHECK_EQUAL(out.result.largest_initial_distance, 0.);
+    RCO_CHECK_LESS(out.result.largest_initial_distance, 1e-15);
   return out;
 }
 
@@ -675,12 +671,11 @@ void test_untangling()
     const char* name;
     Vector_3 move;             // of a vertex, in squares
     std::size_t number_broken; // quads by each, 0 if that is not known
-    bool angles_untangle;      // known to come out with Quad_angle_energy alone
   };
-  for(const Kind& kind : {Kind{"reflex corner", Vector_3(0.6, 0.7, 0), 1, true},
-                          Kind{"reflex corners", Vector_3(1.2, 1.15, 0), 0, false},
-                          Kind{"self-intersecting quads", Vector_3(1.3, 0.1, 0), 2, false},
-                          Kind{"far away", Vector_3(1.7, -0.4, 0), 0, true}})
+  for(const Kind& kind : {Kind{"reflex corner", Vector_3(0.6, 0.7, 0), 1},
+                          Kind{"reflex corners", Vector_3(1.2, 1.15, 0), 0},
+                          Kind{"self-intersecting quads", Vector_3(1.3, 0.1, 0), 2},
+                          Kind{"far away", Vector_3(1.7, -0.4, 0), 0}})
   {
     const Scope scope(kind.name);
     Shape shape = scrambled(regular, 0.1, 10, onto_plane);
@@ -702,13 +697,10 @@ void test_untangling()
       std::cout << "  " << kind.name << ", " << counts().scopes.back() << ": " << broken << " -> "
                 << out.result.number_of_nonconvex_quads << ", angles " << out.corners.minimum
                 << " to " << out.corners.maximum << std::endl;
-      if(is_regularity || kind.angles_untangle)
-      {
-        RCO_CHECK_EQUAL(out.result.number_of_nonconvex_quads, std::size_t(0));
-        RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
-      }
-      // The energy of the angles alone may stick with vertices that were pushed beyond the opposite
-      // corner (known); Quad_regularity_energy does not, and from its result both end well.
+      RCO_CHECK_EQUAL(out.result.number_of_nonconvex_quads, std::size_t(0));
+      RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+      // The energy of the angles alone leaves some corners thin (known); Quad_regularity_energy does
+      // not, and from its result both end well.
       if(!is_regularity)
         out = optimized(optimized(out.after, fine, RCO::Quad_regularity_energy(1), options).after,
                         fine, energy, options);

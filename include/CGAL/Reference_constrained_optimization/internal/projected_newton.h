@@ -186,7 +186,7 @@ private:
             m_part[m_variable[v]] = (std::min)(m_part[m_variable[v]], part);
       });
       if(!is_damped)
-        return;
+        break;
       for(int i = 0; i < m_size; ++i)
         m_direction.segment<2>(2 * i) *= m_part[i];
     }
@@ -215,8 +215,10 @@ private:
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
     {
       const Eigen::Matrix2d shape = problem.shape(e, u);
-      if(!(shape.determinant() > 0))
-        continue; // inverted already: the density pushes it back
+      // inverted already, or as good as: the density pushes it back, and may be trusted with that
+      const double flat = 1e-3;
+      if(!(shape.determinant() > flat * shape.squaredNorm()))
+        continue;
       const std::array<int, 3>& t = problem.triples[e];
       const Vector_2 first = problem.corner_map(e, 0) * motion(t[0]);
       Eigen::Matrix2d d;
