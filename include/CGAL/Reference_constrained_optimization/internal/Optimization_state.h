@@ -60,9 +60,9 @@ struct Optimization_state
   const Element_set& elements;
   std::vector<Placed_vertex> vertices;
   std::vector<char> is_free;
-  Slide_lines lines;
+  Slide_lines lines = {};
   // per vertex that slides: its two neighbours on its line in the mesh; else -1
-  std::vector<std::array<int, 2>> line_neighbours;
+  std::vector<std::array<int, 2>> line_neighbours = {};
 };
 
 // Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
