@@ -1346,7 +1346,11 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   {
     RCO_CHECK_NEAR((frames[v].transpose() * frames[v] - Eigen::Matrix2d::Identity()).norm(), 0.,
                    1e-14);
-    RCO_CHECK_LESS((frames[v].transpose() * patch.placed[v].normal).norm(), 1e-14);
+    const internal::Surface_point& at = patch.placed[v].on_reference;
+    const Vector_3 normal = at.barycentric.minCoeff() > 0
+                              ? surface.face_normal(at.face).normalized()
+                              : patch.placed[v].normal;
+    RCO_CHECK_LESS((frames[v].transpose() * normal).norm(), 1e-14);
     if(!patch.is_free[v])
       continue;
     for(int i = 0; i < 2; ++i, ++variable)
