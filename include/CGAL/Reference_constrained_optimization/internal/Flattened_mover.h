@@ -109,6 +109,7 @@ public:
   const std::vector<Vector_2>& target() const { return m_target; }
   bool overlaps() const { return m_overlaps; }
   double flattening_time() const { return m_flattening_time; }
+  double motion_length(int v) const { return (m_target[v] - m_flattening.positions[v]).norm(); }
   double optimization_time() const { return m_optimization_time; }
 
 private:

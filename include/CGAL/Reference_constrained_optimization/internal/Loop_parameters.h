@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <limits>
 
+#include <cstdlib>
+inline double TUNE(const char* n,double d){ const char* s=getenv(n); return s?atof(s):d; }
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
@@ -49,7 +51,7 @@ inline int triangles_to_faces(const Indexed_mesh& mesh, double triangles)
 inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
 {
   const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
-  const double largest = 4000;
+  const double largest = TUNE("PSMAX",4000);
   return triangles_to_faces(
     mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
 }
@@ -69,13 +71,11 @@ inline Selection_parameters small(Selection_parameters selection, const Indexed_
   return selection;
 }
 
-// regions that are optimized on the surface
-inline Selection_parameters on_surface(Selection_parameters selection, const Indexed_mesh& mesh)
+// of the patches that are optimized on the surface
+inline int on_surface_patch_size(const Selection_parameters& selection, const Indexed_mesh& mesh)
 {
-  if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = patch_size(mesh, 4.5, 700);
-  selection.is_flattened = false;
-  return selection;
+  return selection.maximum_patch_size > 0 ? selection.maximum_patch_size
+                                          : patch_size(mesh, TUNE("PS", 4.5), TUNE("PSMIN",700));
 }
 
 } // namespace internal

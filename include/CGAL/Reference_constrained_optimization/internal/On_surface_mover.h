@@ -109,6 +109,7 @@ public:
     return true;
   }
 
+  double motion_length(int v) const { return m_motion[v].norm(); }
   double optimization_time() const { return m_optimization_time; }
 
 private:

@@ -33,6 +33,7 @@ struct Patch
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   std::vector<Element_set::Element> elements; // in local vertices
+  std::vector<int> element_begin;             // per face: its first element; and their number
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -100,6 +101,7 @@ public:
         patch.outside_face.push_back(is_inside ? -1 : g);
         opposites.push_back(is_inside ? m_local_corner[g] + o - mesh.face_begin[g] : -1);
       }
+      patch.element_begin.push_back(int(patch.elements.size()));
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         Element_set::Element element = state.elements[e];
@@ -109,6 +111,7 @@ public:
       }
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
     }
+    patch.element_begin.push_back(int(patch.elements.size()));
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     for(int i = 0; i < n; ++i)

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,8 @@ struct Patch_measure
 };
 
 // Decides on what a mover proposes: first flips, fold edges and non-convex quads, then energy, all
-// measured on R.
-// Where the proposal fails the step is cut back, first where it does harm, then everywhere.
+// measured on R. Where the proposal fails the step is cut back, first where it does harm, then
+// everywhere; only what a cut changes is measured again.
 class Acceptance_test
 {
 public:
@@ -57,49 +58,47 @@ public:
                   bool is_first)
   {
     Decision decision;
-    const int n = int(patch.vertices.size());
     m_limits = limits;
-    prepare(patch, state);
     if(is_first)
-      decision.before = measure(patch, density, patch.placed, m_before, nullptr);
+    {
+      prepare(patch, state);
+      measure(patch, density, patch.placed, m_before);
+      decision.before = sum_up(patch, m_before);
+    }
     else // what was accepted last is what there is now
     {
       decision.before = m_accepted;
       std::swap(m_before, m_after);
     }
-    m_is_bad.assign(n, 0);
-    for(std::size_t e = 0; e < patch.elements.size(); ++e)
-      if(m_before.densities[e] > limits.bad)
-        for(const int v : patch.elements[e].vertices)
-          m_is_bad[v] = 1;
-    m_step.assign(n, 1.);
+    m_after = m_before;
+    mark_bad(patch);
+    m_steps.start(patch);
     m_candidate = patch.placed;
-    m_needs_placing.assign(n, 1);
+    m_guests = patch.guests;
 
-    const int maximum_attempts = 14, local_attempts = 10;
+    const int maximum_attempts = 20, local_attempts = 16;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
     {
       place(patch, mover);
-      m_is_offender.assign(n, 0);
-      decision.after = measure(patch, density, m_candidate, m_after, &m_before);
+      measure(patch, density, m_candidate, m_after);
+      decision.after = sum_up(patch, m_after);
       visit_guests(patch, state.reference);
+      const bool exceeds = find_offenders(patch);
+      if(getenv("DBG2")) fprintf(stderr,"  att %d after %.6g before %.6g offenders %d exceeds %d def %d\n",attempt,decision.after.energy,decision.before.energy,(int)m_offenders.size(),exceeds,decision.after.defects()-decision.before.defects());
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.energy < decision.before.energy;
-      if(!m_exceeds && (defects < 0 || (defects == 0 && falls)))
+      if(!exceeds && (defects < 0 || (defects == 0 && falls)))
       {
         decision.accepted = true;
         m_accepted = decision.after;
         return decision;
       }
-      if(defects == 0 && !m_exceeds)
-        mark_risen(patch);
-      const bool has_offenders =
-        std::find(m_is_offender.begin(), m_is_offender.end(), char(1)) != m_is_offender.end();
-      if(has_offenders && attempt < local_attempts)
+      if(defects <= 0 && !exceeds)
+        find_risen(patch, decision);
+      if(!m_offenders.empty() && attempt < local_attempts)
         cut_offenders(patch, attempt);
       else
-        for(int v = 0; v < n; ++v)
-          cut(patch, v, 0.5);
+        m_steps.cut_all(patch, 0.5);
     }
     decision.after = decision.before;
     return decision;
@@ -107,16 +106,16 @@ public:
 
   // what was accepted, and the part of its way that each vertex went
   const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
-  const std::vector<double>& steps() const { return m_step; }
+  const std::vector<double>& steps() const { return m_steps.parts(); }
   const std::vector<Patch::Guest>& guests() const { return m_guests; }
 
 private:
-  // per face and corner figures of a measure, to tell what is new
+  // what a measure is made of; a cut changes it piece by piece
   struct Details
   {
-    std::vector<Vector_3> normals;
+    std::vector<Vector_3> normals; // per face
     std::vector<char> flipped;     // per face: turned over, or a quad that is not convex
-    std::vector<char> folded;      // per corner
+    std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per element: cosine of its smallest angle
   };
@@ -128,199 +127,236 @@ private:
     for(std::size_t c = 0; c < patch.outside_face.size(); ++c)
       if(patch.outside_face[c] >= 0)
         m_outside_normal[c] = face_normal(state.mesh, vertex, patch.outside_face[c]);
+    const int n = patch.polygons.number_of_faces();
+    m_before.normals.resize(n);
+    m_before.flipped.resize(n);
+    m_before.folded.assign(patch.polygons.number_of_corners(), 0);
+    m_before.densities.resize(patch.elements.size());
+    m_before.cosines.resize(patch.elements.size());
+    m_is_changed.assign(n, 0);
+    m_changed.resize(n);
+    for(int f = 0; f < n; ++f)
+      m_changed[f] = f;
+    m_is_offender.assign(patch.vertices.size(), 0);
+    m_offenders.clear();
   }
 
+  // evaluates the faces in m_changed
   template <typename Density>
-  Patch_measure measure(const Patch& patch,
-                        const Density& density,
-                        const std::vector<Placed_vertex>& placed,
-                        Details& details,
-                        const Details* before)
+  void measure(const Patch& patch,
+               const Density& density,
+               const std::vector<Placed_vertex>& placed,
+               Details& details)
   {
     const Indexed_mesh& mesh = patch.polygons;
     const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
-    Patch_measure m;
-    m_exceeds = false;
-    details.normals.resize(mesh.number_of_faces());
-    details.flipped.resize(mesh.number_of_faces());
-    details.folded.assign(mesh.number_of_corners(), 0);
-    details.densities.resize(patch.elements.size());
-    details.cosines.resize(patch.elements.size());
-    for(int f = 0; f < mesh.number_of_faces(); ++f)
+    for(const int f : m_changed)
     {
+      m_is_changed[f] = 0;
       details.normals[f] = face_normal(mesh, vertex, f);
       details.flipped[f] =
         char(is_flipped(mesh, vertex, f, details.normals[f]) + is_nonconvex(mesh, vertex, f));
-      m.inner_defects += details.flipped[f];
-      if(before && details.flipped[f] > before->flipped[f])
-        mark_face(mesh, f);
+      for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
+      {
+        details.densities[e] = element_energy(density, patch.elements[e], vertex);
+        details.cosines[e] = smallest_angle_cosine(patch.elements[e], vertex);
+      }
     }
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-    {
-      const int o = mesh.opposite[c], f = mesh.corner_face[c];
-      if(o > c)
+    for(const int f : m_changed)
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       {
-        details.folded[c] = is_folded(details.normals[f], details.normals[mesh.corner_face[o]]);
-        m.inner_defects += details.folded[c];
-      }
-      else if(o < 0 && patch.outside_face[c] >= 0)
-      {
-        details.folded[c] = is_folded(details.normals[f], m_outside_normal[c]);
-        m.boundary_defects += details.folded[c];
-      }
-      if(before && details.folded[c] && !before->folded[c])
-      {
-        mark_face(mesh, f);
+        const int o = mesh.opposite[c];
         if(o >= 0)
-          mark_face(mesh, mesh.corner_face[o]);
+          details.folded[(std::min)(c, o)] =
+            is_folded(details.normals[f], details.normals[mesh.corner_face[o]]);
+        else if(patch.outside_face[c] >= 0)
+          details.folded[c] = is_folded(details.normals[f], m_outside_normal[c]);
       }
-    }
-    for(std::size_t e = 0; e < patch.elements.size(); ++e)
-    {
-      const double d = element_energy(density, patch.elements[e], vertex);
-      details.densities[e] = d;
-      details.cosines[e] = smallest_angle_cosine(patch.elements[e], vertex);
+  }
+
+  // in a fixed order, whatever was measured when
+  static Patch_measure sum_up(const Patch& patch, const Details& details)
+  {
+    Patch_measure m;
+    for(const double d : details.densities)
       m.energy += d;
-      if(before &&
-         ((d > m_limits.worst && d > before->densities[e]) ||
-          (details.cosines[e] > m_limits.sharpest && details.cosines[e] > before->cosines[e])))
-      {
-        m_exceeds = true;
-        for(const int v : patch.elements[e].vertices)
-          m_is_offender[v] = 1;
-      }
-    }
+    for(const char flipped : details.flipped)
+      m.inner_defects += flipped;
+    for(std::size_t c = 0; c < details.folded.size(); ++c)
+      if(details.folded[c])
+        ++(patch.outside_face[c] >= 0 ? m.boundary_defects : m.inner_defects);
     return m;
+  }
+
+  void mark_bad(const Patch& patch)
+  {
+    m_is_bad.assign(patch.vertices.size(), 0);
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+      if(m_before.densities[e] > m_limits.bad)
+        for(const int v : patch.elements[e].vertices)
+          m_is_bad[v] = 1;
+  }
+
+  // takes the vertices whose steps are new to where they lead, and notes the faces that change
+  template <typename Mover>
+  void place(const Patch& patch, Mover& mover)
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    m_changed.clear();
+    m_steps.settle(patch, mover, [&](int v, double step) {
+      for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      {
+        const int f = mesh.corner_face[mesh.vertex_corners[k]];
+        if(!m_is_changed[f])
+        {
+          m_is_changed[f] = 1;
+          m_changed.push_back(f);
+        }
+      }
+      m_candidate[v] = patch.placed[v];
+      if(step == 0 || mover.place(patch, v, step, m_candidate[v]))
+        return true;
+      m_candidate[v] = patch.placed[v];
+      return false;
+    });
   }
 
   // Looks where the vertices of R that are guests of the patch find it now; faces of the mesh that
   // are all on R may still have cut off what is between them.
   void visit_guests(const Patch& patch, const Reference_surface& reference)
   {
+    if(m_guests.empty())
+      return;
+    // a descent looks at the faces around the one where it begins, too
+    m_is_near.assign(patch.vertices.size(), 0);
+    for(const int f : m_changed)
+      for(int c = patch.polygons.face_begin[f]; c < patch.polygons.face_begin[f + 1]; ++c)
+        m_is_near[patch.polygons.corner_vertex[c]] = 1;
     const auto point = [&](int v) -> const Vector_3& { return m_candidate[v].position; };
-    const auto is_bad = [&](int polygon) {
-      const int begin = patch.polygons.face_begin[polygon];
-      for(int c = begin; c < patch.polygons.face_begin[polygon + 1]; ++c)
-        if(m_is_bad[patch.polygons.corner_vertex[c]])
-          return true;
-      return false;
-    };
-    m_guests = patch.guests;
-    for(Patch::Guest& guest : m_guests)
+    for(std::size_t i = 0; i < m_guests.size(); ++i)
     {
+      Patch::Guest& guest = m_guests[i];
+      if(!has_marked(patch.polygons, guest.polygon, m_is_near))
+        continue;
       const Foot foot = descend_to(patch.triangles(), point, reference.points()[guest.vertex],
                                    patch.triangle_of(guest.polygon));
-      const double before = guest.distance;
       guest.polygon = patch.polygon_of(foot.face);
       guest.distance = std::sqrt(foot.squared_distance);
-      // held at the bound, bad elements would stay bad: a fifth of it is reserved for them
-      const double bound = (is_bad(guest.polygon) ? 1. : 0.8) * m_limits.drift;
-      if(guest.distance > bound && guest.distance > before)
+    }
+  }
+
+  // finds what is worse than it may be; returns whether a limit is exceeded
+  bool find_offenders(const Patch& patch)
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    bool exceeds = false;
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+      if(m_after.flipped[f] > m_before.flipped[f])
+        add_face(mesh, f);
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(m_after.folded[c] && !m_before.folded[c])
       {
-        m_exceeds = true;
-        mark_face(patch.polygons, guest.polygon);
+        add_face(mesh, mesh.corner_face[c]);
+        if(mesh.opposite[c] >= 0)
+          add_face(mesh, mesh.corner_face[mesh.opposite[c]]);
+      }
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+    {
+      const double d = m_after.densities[e], cosine = m_after.cosines[e];
+      if((d > m_limits.worst && d > m_before.densities[e]) ||
+         (cosine > m_limits.sharpest && cosine > m_before.cosines[e]))
+      {
+        exceeds = true;
+        add_element(patch, e);
       }
     }
+    for(std::size_t i = 0; i < m_guests.size(); ++i)
+    {
+      // held at the bound, bad elements would stay bad: a fifth of it is reserved for them
+      const Patch::Guest& guest = m_guests[i];
+      const double bound =
+        (has_marked(mesh, guest.polygon, m_is_bad) ? 1. : 0.8) * m_limits.drift;
+      if(guest.distance > bound && guest.distance > patch.guests[i].distance)
+      {
+        exceeds = true;
+        add_face(mesh, guest.polygon);
+      }
+    }
+    return exceeds;
   }
 
   // where nothing is wrong and yet the energy does not fall: what rose most
-  void mark_risen(const Patch& patch)
+  void find_risen(const Patch& patch, const Decision& decision)
   {
+    const double much = 4 * (std::abs(decision.before.energy) / double(patch.elements.size()));
     for(std::size_t e = 0; e < patch.elements.size(); ++e)
-      if(m_after.densities[e] > 1.5 * m_before.densities[e])
-        for(const int v : patch.elements[e].vertices)
-          m_is_offender[v] = 1;
+    {
+      const double before = m_before.densities[e], after = m_after.densities[e];
+      if(after > 1.5 * before || after > before + much)
+        add_element(patch, e);
+    }
   }
 
-  void mark_face(const Indexed_mesh& mesh, int f)
+  void add(int v)
+  {
+    if(!m_is_offender[v])
+    {
+      m_is_offender[v] = 1;
+      m_offenders.push_back(v);
+    }
+  }
+  void add_face(const Indexed_mesh& mesh, int f)
   {
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      m_is_offender[mesh.corner_vertex[c]] = 1;
+      add(mesh.corner_vertex[c]);
+  }
+  void add_element(const Patch& patch, std::size_t e)
+  {
+    for(const int v : patch.elements[e].vertices)
+      add(v);
   }
 
-  template <typename Mover>
-  void place(const Patch& patch, Mover& mover)
+  static bool has_marked(const Indexed_mesh& mesh, int f, const std::vector<char>& is_marked)
   {
-    for(std::size_t v = 0; v < patch.vertices.size(); ++v)
-    {
-      if(!m_needs_placing[v])
-        continue;
-      m_needs_placing[v] = 0;
-      m_candidate[v] = patch.placed[v];
-      if(!patch.is_free[v])
-        continue;
-      while(m_step[v] > 0 && !mover.place(patch, int(v), m_step[v], m_candidate[v]))
-      {
-        m_step[v] = m_step[v] > 0.05 ? 0.5 * m_step[v] : 0;
-        m_candidate[v] = patch.placed[v];
-      }
-    }
-  }
-
-  void cut(const Patch& patch, int v, double factor)
-  {
-    if(!patch.is_free[v] || m_step[v] == 0)
-      return;
-    m_step[v] *= factor;
-    m_needs_placing[v] = 1;
-    if(m_step[v] < 1e-3)
-    {
-      m_step[v] = 0;
-      m_candidate[v] = patch.placed[v];
-    }
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(is_marked[mesh.corner_vertex[c]])
+        return true;
+    return false;
   }
 
   // the offending vertices go back, and after a while their neighbours, too
   void cut_offenders(const Patch& patch, int attempt)
   {
     const Indexed_mesh& mesh = patch.polygons;
+    std::size_t begin = 0;
     for(int ring = 0; ring < attempt / 2; ++ring)
     {
-      const std::vector<char> inner = m_is_offender;
-      for(int c = 0; c < mesh.number_of_corners(); ++c)
-        if(inner[mesh.source(c)] || inner[mesh.target(c)])
-          m_is_offender[mesh.source(c)] = m_is_offender[mesh.target(c)] = 1;
-    }
-    for(int v = 0; v < int(m_is_offender.size()); ++v)
-      if(m_is_offender[v])
-        cut(patch, v, attempt < 3 ? 0.4 : 0.);
-    even_out(patch);
-  }
-
-  // Neighbours must not go very different parts of their ways: that shears what is between them.
-  void even_out(const Patch& patch)
-  {
-    const double largest_difference = 0.2;
-    const Indexed_mesh& mesh = patch.polygons;
-    for(bool changes = true; changes;)
-    {
-      changes = false;
-      const auto limit = [&](int v, int neighbour) {
-        const double most = m_step[neighbour] + largest_difference;
-        if(patch.is_free[v] && patch.is_free[neighbour] && m_step[v] > most)
-        {
-          m_step[v] = most;
-          m_needs_placing[v] = 1;
-          changes = true;
-        }
-      };
-      for(int c = 0; c < mesh.number_of_corners(); ++c)
+      const std::size_t end = m_offenders.size();
+      for(; begin < end; ++begin)
       {
-        limit(mesh.source(c), mesh.target(c));
-        limit(mesh.target(c), mesh.source(c));
+        const int v = m_offenders[begin];
+        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+          add_face(mesh, mesh.corner_face[mesh.vertex_corners[k]]);
       }
     }
+    for(const int v : m_offenders)
+    {
+      m_steps.cut(patch, v, attempt < 3 ? 0.4 : 0.);
+      m_is_offender[v] = 0;
+    }
+    m_offenders.clear();
   }
 
   Limits m_limits{0, 0, 0, 1, 0};
-  std::vector<Patch::Guest> m_guests;
-  bool m_exceeds = false;
-  std::vector<double> m_step;
-  std::vector<char> m_needs_placing, m_is_offender, m_is_bad;
+  Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;
+  std::vector<Patch::Guest> m_guests;
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
+  std::vector<int> m_changed; // faces to be measured
+  std::vector<char> m_is_changed, m_is_bad, m_is_near, m_is_offender;
+  std::vector<int> m_offenders; // vertices
 };
 
 } // namespace internal

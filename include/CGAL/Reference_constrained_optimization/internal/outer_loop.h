@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/commit.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
 
 #include <CGAL/Random.h>
@@ -51,7 +52,7 @@ public:
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
-      m_on_surface_selection(state.mesh, on_surface(parameters.selection, state.mesh)),
+      m_partition(state.mesh, on_surface_patch_size(parameters.selection, state.mesh)),
       m_rounds(state.mesh, parameters.halo),
       m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
   {}
@@ -128,12 +129,19 @@ private:
   bool visit_active()
   {
     if(!m_parameters.use_on_surface_steps)
-      return visit(m_is_active, m_selection, true);
-    std::vector<char> is_wanted = troubled_faces(m_state, m_density, m_limits.troubled);
-    is_wanted = faces_around(m_state.mesh, vertices_of(m_state.mesh, is_wanted), 2);
-    for(std::size_t f = 0; f < is_wanted.size(); ++f)
-      is_wanted[f] = is_wanted[f] && m_is_active[f];
-    return visit(is_wanted, m_selection, true) && visit(m_is_active, m_on_surface_selection, false);
+      return visit(m_is_active, m_selection);
+    static const int order = int(TUNE("ORDER",1));
+    static const double tr = TUNE("TROUBLE",1);
+    const auto flat = [&](double troubled) {
+      std::vector<char> is_wanted = troubled_faces(m_state, m_density, troubled);
+      is_wanted = faces_around(m_state.mesh, vertices_of(m_state.mesh, is_wanted), 2);
+      for(std::size_t f = 0; f < is_wanted.size(); ++f)
+        is_wanted[f] = is_wanted[f] && m_is_active[f];
+      return visit(is_wanted, m_selection);
+    };
+    if(order == 0)
+      return flat(tr * m_limits.troubled) && visit_on_surface(m_is_active);
+    return flat(1e300) && visit_on_surface(m_is_active) && (order == 1 || flat(tr * m_limits.troubled));
   }
 
   // What is left to gain is what the energy has above that of elements that are all at rest.
@@ -166,8 +174,9 @@ private:
         is_wanted[faces[i].second] = 1;
         after += std::log(faces[i].first);
       }
+      if(getenv("DBGW")) { fprintf(stderr,"revisit %d:",pass); for(std::size_t i=0;i<(std::min)(n,std::size_t(12));++i) fprintf(stderr," %d:%.1f",faces[i].second,faces[i].first); fprintf(stderr,"\n"); }
       const double least_gain = 0.01 * double(n);
-      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection, true))
+      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection))
         return;
       before = after;
     }
@@ -175,7 +184,7 @@ private:
 
   // visits the wanted faces, in patches that are flattened or not, until all are touched; false if it
   // was cut short
-  bool visit(const std::vector<char>& is_wanted, Patch_selection& selection, bool flattens)
+  bool visit(const std::vector<char>& is_wanted, Patch_selection& selection)
   {
     const Indexed_mesh& mesh = m_state.mesh;
     std::vector<int> seeds;
@@ -197,9 +206,20 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!solve_round(patches, flattens))
+      if(!solve_round(patches, true))
         return false;
     }
+  }
+
+  // visits the wanted faces in patches that are not flattened
+  bool visit_on_surface(const std::vector<char>& is_wanted)
+  {
+    if(!may_go_on())
+      return false;
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<std::vector<int>> patches = m_partition.divide(is_wanted, m_random);
+    m_result.times.selection += seconds_since(start);
+    return solve_round(patches, false);
   }
 
   bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
@@ -263,6 +283,7 @@ private:
 
   void report(const Solved_patch& s)
   {
+    if(getenv("DBGW")) fprintf(stderr,"  patch seed %d faces %d flat %d acc %d E %.6g -> %.6g def %d %d path %d\n",s.patch.faces.empty()?-1:s.patch.faces[0],(int)s.patch.faces.size(),s.is_flattened,s.decision.accepted,s.decision.before.energy,s.decision.after.energy,s.decision.before.defects(),s.decision.after.defects(),(int)s.path);
     ++m_result.number_of_patches;
     m_result.sum_of_patch_sizes += double(s.patch.faces.size());
     m_result.times.flattening += s.flattening_time;
@@ -295,7 +316,8 @@ private:
   Result& m_result;
   std::chrono::steady_clock::time_point m_start;
   CGAL::Random m_random;
-  Patch_selection m_selection, m_small_selection, m_on_surface_selection;
+  Patch_selection m_selection, m_small_selection;
+  Patch_partition m_partition;
   Patch_rounds m_rounds;
   For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
   Face_geometry m_geometry;

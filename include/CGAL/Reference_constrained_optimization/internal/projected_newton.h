@@ -95,6 +95,7 @@ public:
       if(!found)
         break;
       const double gained = energy - trial;
+      if(getenv("DBG")) fprintf(stderr,"   newton n %d t %.3g energy %.6g -> %.6g pred %.4g\n",m_size,t,energy,trial,decrease);
       u = moved;
       energy = outcome.final_energy = trial;
       ++outcome.steps;
@@ -138,6 +139,7 @@ private:
         continue;
       }
       sum += projected_derivatives(density, J, gradient, hessian, 0);
+      { static const double mu = getenv("MU") ? atof(getenv("MU")) : 0; if(mu>0) hessian.diagonal().array() += mu*hessian.trace(); }
 
       // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
       // in the entries of J
