@@ -47,7 +47,7 @@ and prints one row for each pair, each start and each combination of settings. A
 with Q.off, R.off, and M.off (the mesh to start from) or landmarks.txt (pairs of vertices of Q and
 R, one a line, from which a start is made) or both.
 
-Settings; each takes a number or a list such as 0.1,0.25,0.6:
+Settings; each takes a value or a list such as 0.1,0.25,0.6:
   --developability E     threshold for a face to join a patch
   --patch-size N         largest number of faces of a patch; 0: by the size of the mesh
   --iterations N         largest number of outer iterations
@@ -55,14 +55,17 @@ Settings; each takes a number or a list such as 0.1,0.25,0.6:
   --seed N               random seed
   --drift-bound B        in mean edges of R; inf: none; a negative number: the default
   --time-limit S         seconds
+  --method LIST          ours; plain: without on-surface steps and finishing; paper: as the paper
+                         describes it, every patch flattened from Tutte's embedding, optimized to
+                         the end in the plane, and kept whatever comes back
 Options:
   --start LIST           starts, such as M.off,landmarks: 'landmarks', or a mesh, looked for in the
                          pair's folder first (default: M.off, or else landmarks)
   --baseline             also run an as-rigid-as-possible deformation with a soft constraint to R,
                          once for each start; settings, time limit and --check are not for it
   --parallel             use all threads (if built with TBB)
-  --plain                the paper's method alone
-  --check                verify what is promised; exit code 1 if it does not hold
+  --check                verify what is promised (by ours and plain); exit code 1 if it does not
+                         hold
   --format F             table, csv or json
   -o, --output DIR       write the resulting meshes into this folder (OFF)
   -h, --help             this text
@@ -170,7 +173,7 @@ RCO::Result optimize_map(Mesh& mesh,
 {
   const RCO::Compatible_remeshing_energy energy(pair.source);
   const auto optimize_with = [&](const auto& own) {
-    return optimize(mesh, pair.reference, energy, with_common_settings(own, s, o, visitor),
+    return optimize(mesh, pair.reference, energy, with_common_settings(own, s, visitor), s.method,
                     o.parallel);
   };
   const auto own = CGAL::parameters::developability_threshold(s.developability);
@@ -219,6 +222,7 @@ std::string describe(const Settings& s, const Options& o)
     .add("seed", &Settings::seed)
     .add("drift", &Settings::drift_bound)
     .add("limit", &Settings::time_limit)
+    .add("method", &Settings::method)
     .text();
 }
 
@@ -256,11 +260,12 @@ Row run(const std::string& folder,
 
   const std::string base = base_name(folder), start_name = base_name(start);
   const std::string settings = s ? describe(*s, o) : "";
+  const std::string method = s ? s->method : "arap";
   Row row;
   row.add("pair", "pair", base);
   row.add("start", "start", start_name);
   if(o.baseline)
-    row.add("method", "method", s ? "ours" : "arap");
+    row.add("method", "method", method);
   if(o.runs.size() > 1)
     row.add("settings", "settings", settings);
   row.add("vertices", "V", double(mesh.number_of_vertices()));
@@ -291,12 +296,9 @@ Row run(const std::string& folder,
   row.add("peak_memory_mb", "MB", memory, 0);
 
   if(o.check)
-  {
-    // the baseline promises nothing
-    const std::string broken = s ? broken_promises(pair, mesh, defects, visitor.violations) : "";
-    holds = broken.empty();
-    row.add("violations", "violations", !s ? "-" : holds ? "none" : broken);
-  }
+    add_check(
+      row, method, [&]() { return broken_promises(pair, mesh, defects, visitor.violations); },
+      holds);
   if(!o.output_folder.empty())
     write(mesh, o.output_folder,
           base + "_" + start_name + (s ? "" : "_arap") + (settings.empty() ? "" : "_" + settings));

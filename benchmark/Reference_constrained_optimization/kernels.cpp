@@ -4,11 +4,17 @@
 
 // Micro-benchmarks of single steps, on patches of a bumpy torus.
 
-#include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/On_surface_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
 
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh_parameterization/ARAP_parameterizer_3.h>
+#include <CGAL/Surface_mesh_parameterization/parameterize.h>
 #include <Eigen/SparseCholesky>
 #include <benchmark/benchmark.h>
 
@@ -48,39 +54,37 @@ Mesh_copy bumpy_torus(int columns, int rows)
   return copy;
 }
 
+// the torus as mesh and reference, at the start of an optimization
 struct Scene
 {
   Mesh_copy copy = bumpy_torus(240, 96);
   Reference_surface surface{copy};
+  RCO::Minimum_angle_energy energy;
+  Element_set elements{energy, RCO::Energy_context(copy.mesh.face_begin,
+                                                   copy.mesh.corner_vertex,
+                                                   copy.points.size(),
+                                                   mean_edge_length(copy.mesh, copy.points),
+                                                   surface.area(),
+                                                   surface.area())};
+  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
   Face_geometry geometry;
 
-  Scene() { geometry.update(copy.mesh, copy.points); }
+  Scene()
+  {
+    RCO::Result result;
+    state.is_free.assign(copy.points.size(), 1);
+    place_on_reference(copy.points, surface, state, result);
+    geometry.update(copy.mesh, copy.points);
+  }
 
-  // a patch of so many faces, in local vertices, with its points
-  Mesh_copy patch(int size) const
+  Patch patch(int size) const
   {
     Selection_parameters parameters;
     parameters.maximum_patch_size = size;
     parameters.developability_threshold = 1;
     Patch_selection selection(copy.mesh, parameters);
-    Mesh_copy result;
-    std::vector<int> begins(1, 0), corners, local(copy.points.size(), -1);
-    for(const int f : selection.grow(0, geometry, [](int) { return false; }))
-    {
-      for(int c = copy.mesh.face_begin[f]; c < copy.mesh.face_begin[f + 1]; ++c)
-      {
-        const int v = copy.mesh.corner_vertex[c];
-        if(local[v] < 0)
-        {
-          local[v] = int(result.points.size());
-          result.points.push_back(copy.points[v]);
-        }
-        corners.push_back(local[v]);
-      }
-      begins.push_back(int(corners.size()));
-    }
-    result.mesh = Indexed_mesh(begins, corners, int(result.points.size()));
-    return result;
+    return Patch_builder(copy.mesh).build(selection.grow(0, geometry, [](int) { return false; }),
+                                          state);
   }
 };
 
@@ -93,19 +97,21 @@ const Scene& scene()
 void cone_proxy(benchmark::State& state)
 {
   const int n = int(state.range(0));
+  const Face_geometry& geometry = scene().geometry;
   for(auto _ : state)
   {
     Cone_proxy_fit fit;
     for(int f = 0; f < n; ++f)
-      fit.add(scene().geometry.normals[f], scene().geometry.areas[f]);
+      fit.add(geometry.normals[f], geometry.areas[f]);
     benchmark::DoNotOptimize(fit.fit());
   }
 }
 
-void growing(benchmark::State& state)
+void growing(benchmark::State& state, bool grows_by_cost)
 {
   Selection_parameters parameters;
   parameters.maximum_patch_size = int(state.range(0));
+  parameters.grows_by_cost = grows_by_cost;
   Patch_selection selection(scene().copy.mesh, parameters);
   int seed = 0;
   for(auto _ : state)
@@ -116,39 +122,89 @@ void growing(benchmark::State& state)
   }
 }
 
-void flattening(benchmark::State& state, bool use_conformal)
+std::vector<Vector_3> points_of(const Patch& patch)
 {
-  const Mesh_copy patch = scene().patch(int(state.range(0)));
-  Flattening_parameters parameters;
-  parameters.use_conformal = use_conformal;
-  Patch_flattener flattener;
-  for(auto _ : state)
-    benchmark::DoNotOptimize(flattener.flatten(patch.mesh, patch.points, parameters).distortion);
+  std::vector<Vector_3> points;
+  for(const Placed_vertex& p : patch.placed)
+    points.push_back(p.position);
+  return points;
 }
 
-void newton_step(benchmark::State& state)
+// what a map to a convex border distorts is mended by descent
+void flattening(benchmark::State& state, bool use_conformal, bool use_mean_value)
 {
-  const Mesh_copy patch = scene().patch(int(state.range(0)));
-  const std::vector<Vector_2> start = Patch_flattener().flatten(patch.mesh, patch.points).positions;
-  Planar_problem problem;
-  const Eigen::Matrix2d rest = RCO::equilateral_rest_triangle(0.02).inverse();
-  for(int f = 0; f < patch.mesh.number_of_faces(); ++f)
+  const Patch patch = scene().patch(int(state.range(0)));
+  const std::vector<Vector_3> points = points_of(patch);
+  Flattening_parameters parameters;
+  parameters.use_conformal = use_conformal;
+  parameters.use_mean_value = use_mean_value;
+  Patch_flattener flattener;
+  for(auto _ : state)
+    state.counters["distortion"] =
+      flattener.flatten(patch.triangles(), points, parameters).distortion;
+}
+
+// CGAL's, for comparison; it finds its own start
+void flattening_as_rigid_as_possible(benchmark::State& state)
+{
+  typedef CGAL::Simple_cartesian<double> Kernel;
+  typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
+  namespace SMP = CGAL::Surface_mesh_parameterization;
+  const Patch patch = scene().patch(int(state.range(0)));
+  Mesh mesh;
+  for(const Placed_vertex& p : patch.placed)
+    mesh.add_vertex(Kernel::Point_3(p.position.x(), p.position.y(), p.position.z()));
+  for(int f = 0; f < patch.triangles().number_of_faces(); ++f)
   {
-    const int* v = &patch.mesh.corner_vertex[3 * f];
-    problem.triples.push_back({{v[0], v[1], v[2]}});
-    problem.rest_inverse.push_back(rest);
+    const int* v = &patch.triangles().corner_vertex[3 * f];
+    mesh.add_face(Mesh::Vertex_index(v[0]), Mesh::Vertex_index(v[1]), Mesh::Vertex_index(v[2]));
+  }
+  Mesh::Halfedge_index border;
+  for(const Mesh::Halfedge_index h : mesh.halfedges())
+    if(mesh.is_border(h))
+      border = h;
+  const auto uv = mesh.add_property_map<Mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
+  for(auto _ : state)
+    if(SMP::parameterize(mesh, SMP::ARAP_parameterizer_3<Mesh>(), border, uv) != SMP::OK)
+      state.SkipWithError("no parameterization");
+}
+
+std::vector<Vector_2> flat(const Patch& patch)
+{
+  return Patch_flattener().flatten(patch.triangles(), points_of(patch)).positions;
+}
+
+// one step from the start, its pattern being analyzed
+void newton_step_in_plane(benchmark::State& state)
+{
+  const Patch patch = scene().patch(int(state.range(0)));
+  const std::vector<Vector_2> start = flat(patch);
+  Planar_problem problem;
+  for(const Element_set::Element& e : patch.elements)
+  {
+    problem.triples.push_back(e.vertices);
+    problem.rest_inverse.push_back(e.rest_inverse);
     problem.metric.push_back(Eigen::Matrix2d::Identity());
   }
-  for(const char is_border : patch.mesh.is_border_vertex)
-    problem.is_free.push_back(!is_border);
+  problem.is_free = patch.is_free;
   Projected_newton optimizer;
   optimizer.analyze(problem);
   for(auto _ : state)
   {
     std::vector<Vector_2> u = start;
     benchmark::DoNotOptimize(
-      optimizer.minimize(problem, RCO::Exponential_MIPS_density(), u, 1, 0.).final_energy);
+      optimizer.minimize(problem, scene().energy.density(), u, 1, 0.).final_energy);
   }
+}
+
+// the same in the tangent planes of the vertices, which are set up anew for every step
+void newton_step_on_surface(benchmark::State& state)
+{
+  const Patch patch = scene().patch(int(state.range(0)));
+  On_surface_mover mover(scene().surface, 1);
+  mover.propose(patch, scene().energy.density());
+  for(auto _ : state)
+    benchmark::DoNotOptimize(mover.propose_again(patch, {}, scene().energy.density()));
 }
 
 // The system of a patch of triangles (with its free vertices), or of a square of quads in which
@@ -181,12 +237,13 @@ struct Factorization_scene
     }
     else
     {
-      const Mesh_copy patch = scene().patch(number_of_faces);
+      const Patch patch = scene().patch(number_of_faces);
+      const Indexed_mesh& mesh = patch.triangles();
       std::vector<int> variable;
-      for(const char is_border : patch.mesh.is_border_vertex)
-        variable.push_back(is_border ? -1 : size++);
-      for(int c = 0; c < patch.mesh.number_of_corners(); ++c)
-        pairs.push_back({{variable[patch.mesh.source(c)], variable[patch.mesh.target(c)]}});
+      for(const char is_free : patch.is_free)
+        variable.push_back(is_free ? size++ : -1);
+      for(int c = 0; c < mesh.number_of_corners(); ++c)
+        pairs.push_back({{variable[mesh.source(c)], variable[mesh.target(c)]}});
     }
     block.analyze(size, pairs);
     block.set_zero();
@@ -246,6 +303,24 @@ void symbolic_factorization(benchmark::State& state, bool is_block, bool is_quad
       s.eigen.analyzePattern(s.matrix);
 }
 
+// points half an edge away from a vertex, from a triangle at that vertex on
+void location(benchmark::State& state)
+{
+  const Patch patch = scene().patch(1000);
+  const Indexed_mesh& mesh = patch.triangles();
+  const std::vector<Vector_2> u = flat(patch);
+  std::vector<int> start(u.size(), -1);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    start[mesh.corner_vertex[c]] = c / 3;
+  int c = 0;
+  for(auto _ : state)
+  {
+    const Vector_2 p = 0.5 * (u[mesh.source(c)] + u[mesh.target(c)]);
+    benchmark::DoNotOptimize(walk(mesh, u, p, start[mesh.source(c)]).triangle);
+    c = (c + 977) % mesh.number_of_corners();
+  }
+}
+
 // points half an edge away from where the search starts, and a little off the surface
 void closest_point(benchmark::State& state, bool is_local)
 {
@@ -261,59 +336,29 @@ void closest_point(benchmark::State& state, bool is_local)
   }
 }
 
+void patch_sizes(benchmark::internal::Benchmark* benchmark)
+{
+  benchmark->Arg(400)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
+}
+
 BENCHMARK(cone_proxy)->Arg(1000);
-BENCHMARK(growing)->Arg(400)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(flattening, conformal, true)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(flattening, convex_border, false)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_step)->Arg(400)->Arg(1000)->Arg(4000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(factorization, block, true, false)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(factorization, eigen, false, false)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(factorization, block_quads, true, true)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(factorization, eigen_quads, false, true)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(symbolic_factorization, block, true, false)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(symbolic_factorization, eigen, false, false)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(symbolic_factorization, block_quads, true, true)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(symbolic_factorization, eigen_quads, false, true)
-  ->Arg(400)
-  ->Arg(1000)
-  ->Arg(4000)
-  ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(growing, by_distance, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(growing, by_cost, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, conformal, true, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, mean_value, false, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, tutte, false, false)->Apply(patch_sizes);
+BENCHMARK(flattening_as_rigid_as_possible)->Apply(patch_sizes);
+BENCHMARK(newton_step_in_plane)->Apply(patch_sizes);
+BENCHMARK(newton_step_on_surface)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(factorization, block, true, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(factorization, eigen, false, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(factorization, block_quads, true, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(factorization, eigen_quads, false, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(symbolic_factorization, block, true, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(symbolic_factorization, eigen, false, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(symbolic_factorization, block_quads, true, true)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(symbolic_factorization, eigen_quads, false, true)->Apply(patch_sizes);
+BENCHMARK(location);
 BENCHMARK_CAPTURE(closest_point, local, true);
 BENCHMARK_CAPTURE(closest_point, tree, false);
 

@@ -40,7 +40,7 @@ const char* const usage =
 Improves the minimum angle of every mesh (triangles; OFF, OBJ, PLY, STL) and prints one row for each
 mesh and each combination of settings.
 
-Settings; each takes a number or a list such as 0.1,0.25,0.6:
+Settings; each takes a value or a list such as 0.1,0.25,0.6:
   --exponent S           factor in the exponent of the energy (default 1)
   --developability E     threshold for a face to join a patch
   --patch-size N         largest number of faces of a patch; 0: by the size of the mesh
@@ -49,11 +49,14 @@ Settings; each takes a number or a list such as 0.1,0.25,0.6:
   --seed N               random seed
   --sharp-edges ANGLE    fix edges whose normals differ by more than ANGLE degrees; 0 is off
   --time-limit S         seconds
+  --method LIST          ours; plain: without on-surface steps and finishing; paper: as the paper
+                         describes it, every patch flattened from Tutte's embedding, optimized to
+                         the end in the plane, and kept whatever comes back
 Options:
   --reference FILE       optimize against this mesh instead of the mesh's own shape
   --parallel             use all threads (if built with TBB)
-  --plain                the paper's method alone
-  --check                verify what is promised; exit code 1 if it does not hold
+  --check                verify what is promised (by ours and plain); exit code 1 if it does not
+                         hold
   --format F             table, csv or json
   -o, --output DIR       write the resulting meshes into this folder (OFF)
   -h, --help             this text
@@ -119,6 +122,7 @@ std::string describe(const Settings& s, const Options& o)
     .add("seed", &Settings::seed)
     .add("sharp", &Settings::sharp_edges)
     .add("limit", &Settings::time_limit)
+    .add("method", &Settings::method)
     .text();
 }
 
@@ -133,11 +137,11 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
     CGAL::Polygon_mesh_processing::detect_sharp_edges(mesh, s.sharp_edges, is_constrained);
 
   Monotonicity_visitor visitor;
-  const auto np = with_common_settings(CGAL::parameters::developability_threshold(s.developability),
-                                       s, o, visitor)
-                    .edge_is_constrained_map(is_constrained);
+  const auto np =
+    with_common_settings(CGAL::parameters::developability_threshold(s.developability), s, visitor)
+      .edge_is_constrained_map(is_constrained);
   const RCO::Result r =
-    optimize(mesh, reference, RCO::Minimum_angle_energy(s.exponent), np, o.parallel);
+    optimize(mesh, reference, RCO::Minimum_angle_energy(s.exponent), np, s.method, o.parallel);
   const double memory = peak_memory();
 
   const std::string base = base_name(file);
@@ -148,14 +152,8 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
     row.add("settings", "settings", settings);
   row.add("vertices", "V", double(mesh.number_of_vertices()));
   row.add("faces", "F", double(mesh.number_of_faces()));
-  const auto add_angles = [&](const Mesh& m, const std::string& when) {
-    const RCO::Angle_statistics a = RCO::angle_statistics(m);
-    row.add("theta_min_" + when, "theta " + when, a.minimum, 2);
-    row.add("theta_mean_" + when, "theta " + when, a.mean, 2);
-    row.add("theta_std_" + when, "theta " + when, a.standard_deviation, 2);
-  };
-  add_angles(input, "in");
-  add_angles(mesh, "out");
+  add_angles(row, input, "in");
+  add_angles(row, mesh, "out");
   const RCO::Drift drift = RCO::drift(mesh, reference);
   row.add("drift_mesh_to_reference", "drift", drift.relative_mesh_to_reference(), 3);
   row.add("drift_reference_to_mesh", "drift", drift.relative_reference_to_mesh(), 3);
@@ -182,12 +180,10 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
   row.add("peak_memory_mb", "MB", memory, 0);
 
   if(o.check)
-  {
-    const std::string broken =
-      broken_promises(input, mesh, reference, is_constrained, visitor.violations);
-    holds = broken.empty();
-    row.add("violations", "violations", holds ? "none" : broken);
-  }
+    add_check(
+      row, s.method,
+      [&]() { return broken_promises(input, mesh, reference, is_constrained, visitor.violations); },
+      holds);
   if(!o.output_folder.empty())
     write(mesh, o.output_folder, settings.empty() ? base : base + "_" + settings);
   return row;

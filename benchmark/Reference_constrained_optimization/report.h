@@ -85,8 +85,8 @@ private:
     static const std::vector<Width> widths = {
       {5, {"N_out", "SD", "MB"}},
       {6, {"method", "V", "F", "median", "p99", "off", "N_in", "faces", "us/V"}},
-      {7, {"max", "flips", "folds", "s", "T_F ms"}},
-      {8, {"time/T_F"}},
+      {7, {"max", "flips", "folds", "s", "T_F ms", "threads"}},
+      {8, {"time/T_F", "speed-up"}},
       {9, {"nonconvex", "drift in", "drift out"}},
       {10, {"settings", "accepted %"}},
       {11, {"start", "mean", "drift"}},

@@ -4,6 +4,7 @@
 // Columns that the drivers have in common.
 
 #include "meshes.h"
+#include "method.h"
 #include "promises.h"
 #include "report.h"
 
@@ -23,7 +24,17 @@ inline void add_flips_and_folds(Row& row, const Defects_in_and_out& defects)
   row.add("folds_out", "folds", double(defects.out.number_of_fold_edges));
 }
 
-// both ways; `when` is in or out
+// smallest angles of the faces; `when` is in or out
+inline void add_angles(Row& row, const Mesh& mesh, const std::string& when)
+{
+  const CGAL::Reference_constrained_optimization::Angle_statistics a =
+    CGAL::Reference_constrained_optimization::angle_statistics(mesh);
+  row.add("theta_min_" + when, "theta " + when, a.minimum, 2);
+  row.add("theta_mean_" + when, "theta " + when, a.mean, 2);
+  row.add("theta_std_" + when, "theta " + when, a.standard_deviation, 2);
+}
+
+// both ways
 inline void add_drift(Row& row,
                       const CGAL::Reference_constrained_optimization::Drift& drift,
                       const std::string& when)
@@ -75,6 +86,18 @@ inline void add_times(Row& row, const Mesh& mesh, double seconds)
   row.add("time_s", "s", seconds, 2);
   add_factorization(row, mesh, seconds);
   row.add("us_per_vertex", "us/V", 1e6 * seconds / double(mesh.number_of_vertices()), 1);
+}
+
+// what --check finds; `broken_promises()` returns it, in words
+template <typename Broken_promises_function>
+void add_check(Row& row,
+               const std::string& method,
+               const Broken_promises_function& broken_promises,
+               bool& holds)
+{
+  const std::string broken = keeps_promises(method) ? broken_promises() : "";
+  holds = broken.empty();
+  row.add("violations", "violations", !keeps_promises(method) ? "-" : holds ? "none" : broken);
 }
 
 #endif // RCO_BENCHMARK_RESULT_COLUMNS_H

@@ -6,16 +6,19 @@
 #include "report.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #if defined(__unix__) || defined(__APPLE__)
 #define RCO_HAS_POSIX
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,6 +31,43 @@ struct Task
 {
   std::string name;
   std::function<Row(bool& holds)> run;
+};
+
+// Numbers that runs leave for one another and for the driver. They are NaN until then.
+class Shared_numbers
+{
+public:
+  explicit Shared_numbers(std::size_t size) : m_size(size)
+  {
+#ifdef RCO_HAS_POSIX
+    void* const memory =
+      mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if(memory == MAP_FAILED)
+      throw std::runtime_error("there is no memory to share");
+    m_begin = static_cast<double*>(memory);
+#else
+    m_begin = new double[size];
+#endif
+    std::fill(m_begin, m_begin + size, std::numeric_limits<double>::quiet_NaN());
+  }
+  Shared_numbers(const Shared_numbers&) = delete;
+  Shared_numbers& operator=(const Shared_numbers&) = delete;
+  ~Shared_numbers()
+  {
+#ifdef RCO_HAS_POSIX
+    munmap(m_begin, bytes());
+#else
+    delete[] m_begin;
+#endif
+  }
+
+  double& operator[](std::size_t i) { return m_begin[i]; }
+
+private:
+  std::size_t bytes() const { return (std::max)(m_size, std::size_t(1)) * sizeof(double); }
+
+  std::size_t m_size;
+  double* m_begin;
 };
 
 inline double peak_memory() // in megabytes, of this process so far

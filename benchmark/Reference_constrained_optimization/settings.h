@@ -4,8 +4,11 @@
 // Settings and options that the drivers have in common, and the lists of values that make several
 // runs.
 
+#include "method.h"
+
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <iostream>
@@ -25,6 +28,7 @@ struct Common_settings
   unsigned int iterations = unsigned(Defaults().number_of_iterations);
   double tolerance = Defaults().energy_tolerance;
   unsigned int seed = 0;
+  std::string method = method_names[0];
   double time_limit = std::numeric_limits<double>::infinity();
 };
 
@@ -35,7 +39,7 @@ struct Common_options
   std::vector<Settings> runs{Settings()};
   std::vector<std::string> files;
   std::string format = "table", output_folder;
-  bool parallel = false, plain = false, check = false;
+  bool parallel = false, check = false;
 };
 
 inline std::vector<std::string> split_list(const std::string& text)
@@ -88,6 +92,22 @@ void expand(std::vector<Settings>& runs,
   runs = expanded;
 }
 
+// the same for the method
+template <typename Settings>
+void expand_methods(std::vector<Settings>& runs, const std::string& option, const std::string& list)
+{
+  std::vector<Settings> expanded;
+  for(const Settings& run : runs)
+    for(const std::string& item : split_list(list))
+    {
+      if(std::find(method_names.begin(), method_names.end(), item) == method_names.end())
+        throw std::invalid_argument(option + ": there is no method '" + item + "'");
+      expanded.push_back(run);
+      expanded.back().method = item;
+    }
+  runs = expanded;
+}
+
 // takes an option that all drivers have; `value` returns the option's argument
 template <typename Options, typename Value>
 bool take_common_option(Options& o, const std::string& option, const Value& value)
@@ -110,8 +130,8 @@ bool take_common_option(Options& o, const std::string& option, const Value& valu
     o.output_folder = value();
   else if(option == "--parallel")
     o.parallel = true;
-  else if(option == "--plain")
-    o.plain = true;
+  else if(option == "--method")
+    expand_methods(o.runs, option, value());
   else if(option == "--check")
     o.check = true;
   else
@@ -131,10 +151,15 @@ void check_common_options(const Options& o)
 }
 
 // Reads the command line; `take_own(options, option, value)` takes what is the driver's own, and
-// returns false for what is not. `input` is what the driver calls its files.
+// returns false for what is not. `input` is what the driver calls its files, `default_file` the one
+// to take if none is given, if there is such a thing.
 template <typename Options, typename Take_own>
-Options parse_options(
-  int argc, char* argv[], const char* usage, const std::string& input, const Take_own& take_own)
+Options parse_options(int argc,
+                      char* argv[],
+                      const char* usage,
+                      const std::string& input,
+                      const Take_own& take_own,
+                      const std::string& default_file = "")
 {
   Options o;
   for(int i = 1; i < argc; ++i)
@@ -157,6 +182,8 @@ Options parse_options(
     else
       o.files.push_back(option);
   }
+  if(o.files.empty() && !default_file.empty())
+    o.files.push_back(default_file);
   if(o.files.empty())
     throw std::invalid_argument("no " + input + " given (--help tells more)");
   check_common_options(o);

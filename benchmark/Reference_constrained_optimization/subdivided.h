@@ -4,21 +4,18 @@
 // Finer quad meshes of a surface.
 
 #include "meshes.h"
+#include "shape.h"
 
 #include <CGAL/Polygon_mesh_processing/repair.h>
-#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
 #include <CGAL/subdivision_method_3.h>
 
 // `steps` steps of Catmull-Clark subdivision. After each the vertices are put onto the reference,
 // but for those at the border: they stay, or halve its edges.
 inline Mesh subdivided(Mesh mesh, const Mesh& reference, int steps)
 {
-  namespace internal = CGAL::Reference_constrained_optimization::internal;
   if(steps == 0)
     return mesh;
-  const internal::Reference_surface surface(
-    internal::read_measured_mesh(reference, CGAL::parameters::default_values(), "reference"));
+  const Shape shape(reference);
   CGAL::Polygon_mesh_processing::remove_isolated_vertices(mesh);
   mesh.collect_garbage();
   for(int i = 0; i < steps; ++i)
@@ -30,10 +27,7 @@ inline Mesh subdivided(Mesh mesh, const Mesh& reference, int steps)
     {
       Kernel::Point_3& p = mesh.point(v);
       if(!mesh.is_border(v))
-      {
-        const internal::Vector_3 closest = surface.closest({p.x(), p.y(), p.z()}).position;
-        p = Kernel::Point_3(closest.x(), closest.y(), closest.z());
-      }
+        p = shape.project(p);
       else if(coarse.has_valid_index(v))
         p = coarse.point(v);
     }

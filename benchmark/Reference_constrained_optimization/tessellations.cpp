@@ -8,12 +8,12 @@
 //
 //   rco_benchmark --reference mesh folder/<name>_*.off
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/IO/polygon_mesh_io.h>
+#include "meshes.h"
+#include "shape.h"
+
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Random.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/Euler_operations.h>
 
 #include <algorithm>
@@ -28,36 +28,8 @@
 
 namespace RCO = CGAL::Reference_constrained_optimization;
 namespace PMP = CGAL::Polygon_mesh_processing;
-typedef CGAL::Exact_predicates_inexact_constructions_kernel Kernel;
 typedef Kernel::Point_3 Point;
 typedef Kernel::Vector_3 Vector;
-typedef CGAL::Surface_mesh<Point> Mesh;
-
-// The shape: closest points and normals.
-class Shape
-{
-public:
-  explicit Shape(const Mesh& mesh)
-    : m_surface(RCO::internal::read_face_graph(mesh, mesh.points(), "mesh"))
-  {}
-  Point project(const Point& p) const
-  {
-    const Eigen::Vector3d q = closest(p).position;
-    return Point(q.x(), q.y(), q.z());
-  }
-  Vector normal(const Point& p) const
-  {
-    const Eigen::Vector3d n = m_surface.normal(closest(p)).normalized();
-    return Vector(n.x(), n.y(), n.z());
-  }
-
-private:
-  RCO::internal::Surface_point closest(const Point& p) const
-  {
-    return m_surface.closest(Eigen::Vector3d(p.x(), p.y(), p.z()));
-  }
-  RCO::internal::Reference_surface m_surface;
-};
 
 // whether a triangle agrees with the shape's normal and has no angle below the bound (degrees)
 bool is_good(const Shape& shape, const Point& a, const Point& b, const Point& c, double bound)
@@ -195,11 +167,8 @@ int main(int argc, char* argv[])
   const std::string folder = argc > 2 ? argv[2] : ".";
   try
   {
-    Mesh mesh;
-    if(!CGAL::IO::read_polygon_mesh(file, mesh))
-      throw std::runtime_error("cannot be read as a polygon mesh");
-    const std::size_t start = file.find_last_of("/\\") + 1;
-    const std::string base = folder + "/" + file.substr(start, file.find_last_of('.') - start);
+    const Mesh mesh = read(file);
+    const std::string base = folder + "/" + base_name(file);
     const Shape shape(mesh);
     CGAL::Random random(0);
     const double length = mean_edge_length(mesh);

@@ -3,14 +3,13 @@
 #ifndef RCO_EXAMPLE_SVG_HISTOGRAM_H
 #define RCO_EXAMPLE_SVG_HISTOGRAM_H
 
+#include "svg.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
-#include <iomanip>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,12 +46,6 @@ private:
   double x(double bin) const { return left + (right - left) * bin / number_of_bins(); }
   double y(double percent) const { return bottom - (bottom - top) * percent / m_largest_percent; }
 
-  static std::string to_string(double value, int digits)
-  {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(digits) << value;
-    return out.str();
-  }
   // as many as a step from tick to tick needs
   static int digits_of_tick(double tick)
   {
@@ -79,7 +72,7 @@ private:
     for(const double value : values)
       sum_of_squares += (value - sum / n) * (value - sum / n);
     for(const double figure : {minimum, maximum, std::sqrt(sum_of_squares / n)})
-      result.figures.push_back(to_string(figure, m_axis.digits) + m_axis.unit);
+      result.figures.push_back(svg::number(figure, m_axis.digits) + m_axis.unit);
     return result;
   }
 
@@ -95,58 +88,36 @@ private:
     m_largest_percent = m_percent_tick * std::ceil(1.04 * highest / m_percent_tick);
   }
 
-  static void write_text(std::ostream& out,
-                         double x,
-                         double y,
-                         const char* anchor,
-                         const std::string& text,
-                         const std::string& more = "")
-  {
-    out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\"" << more
-        << ">" << text << "</text>\n";
-  }
-
-  static void
-  write_line(std::ostream& out, double x0, double y0, double x1, double y1, const char* more)
-  {
-    out << "<line x1=\"" << x0 << "\" y1=\"" << y0 << "\" x2=\"" << x1 << "\" y2=\"" << y1 << "\" "
-        << more << "/>\n";
-  }
-
   void write_grid(std::ostream& out) const
   {
     for(int i = 1; i * m_percent_tick <= m_largest_percent * 1.001; ++i)
-      write_line(out, left, y(i * m_percent_tick), right, y(i * m_percent_tick),
-                 "stroke=\"#e3e3e3\" stroke-width=\"0.6\"");
+      svg::line(out, left, y(i * m_percent_tick), right, y(i * m_percent_tick), svg::grid);
   }
 
   void write_axes(std::ostream& out) const
   {
-    const char* const axis = "stroke=\"#333\" stroke-width=\"0.8\"";
-    write_line(out, left, bottom, right, bottom, axis);
+    svg::line(out, left, bottom, right, bottom, svg::axis);
     for(int i = 0; i * m_percent_tick <= m_largest_percent * 1.001; ++i)
     {
       const double percent = i * m_percent_tick;
-      write_text(out, left - 6, y(percent) + 3.5, "end",
-                 to_string(percent, digits_of_tick(m_percent_tick)));
+      svg::text(out, left - 6, y(percent) + 3.5, "end",
+                svg::number(percent, digits_of_tick(m_percent_tick)));
     }
-    write_text(out, 0, 0, "middle", m_axis.share + " (%)",
-               " transform=\"translate(20 " + to_string(0.5 * (top + bottom), 1) +
-                 ") rotate(-90)\"");
+    svg::vertical_text(out, 20, 0.5 * (top + bottom), m_axis.share + " (%)");
     for(int i = 0; i * m_axis.tick <= m_axis.end * 1.001; ++i)
     {
       const double value = i * m_axis.tick;
       const bool is_open = m_axis.is_open && value + m_axis.tick > m_axis.end * 1.001;
       const double position = x(value / m_axis.bin + (is_open ? 0.5 : 0)); // the bin's middle
-      write_line(out, position, bottom, position, bottom + 4, axis);
-      write_text(out, position, bottom + 15, "middle",
-                 (is_open ? "&#8805;&#8201;" : "") + to_string(value, digits_of_tick(m_axis.tick)));
+      svg::line(out, position, bottom, position, bottom + 4, svg::axis);
+      svg::text(out, position, bottom + 15, "middle",
+                (is_open ? "&#8805;&#8201;" : "") +
+                  svg::number(value, digits_of_tick(m_axis.tick)));
     }
-    write_text(out, 0.5 * (left + right), bottom + 31, "middle", m_axis.label);
+    svg::text(out, 0.5 * (left + right), bottom + 31, "middle", m_axis.label);
     const double ideal = x(m_axis.ideal / m_axis.bin);
-    write_line(out, ideal, top, ideal, bottom,
-               "stroke=\"#222\" stroke-width=\"0.8\" stroke-dasharray=\"3 3\"");
-    write_text(out, ideal, top - 5, "middle", "ideal", " font-style=\"italic\"");
+    svg::line(out, ideal, top, ideal, bottom, svg::dashes);
+    svg::text(out, ideal, top - 5, "middle", "ideal", " font-style=\"italic\"");
   }
 
   // the outlines are drawn above both fillings
@@ -164,12 +135,12 @@ private:
   {
     out << "<rect x=\"" << left << "\" y=\"" << y - 8 << "\" width=\"14\" height=\"9\" "
         << s.filling << ' ' << s.outline << "/>\n";
-    write_text(out, left + 21, y, "start", s.name);
+    svg::text(out, left + 21, y, "start", s.name);
     const char* const names[3] = {"min", "max", "std"};
     for(int i = 0; i < 3; ++i)
     {
-      write_text(out, left + 96 + 100 * i, y, "start", names[i]);
-      write_text(out, left + 164 + 100 * i, y, "end", s.figures[i]);
+      svg::text(out, left + 96 + 100 * i, y, "start", names[i]);
+      svg::text(out, left + 164 + 100 * i, y, "end", s.figures[i]);
     }
   }
 
@@ -188,12 +159,8 @@ public:
   void write(const std::string& file) const
   {
     std::ofstream out(file);
-    out << std::setprecision(6) << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width
-        << "pt\" height=\"" << height << "pt\" viewBox=\"0 0 " << width << ' ' << height
-        << "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"#222\">\n"
-        << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-    write_text(out, 0.5 * (left + right), 24, "middle", m_axis.title,
-               " font-size=\"13\" font-weight=\"bold\"");
+    svg::begin(out, width, height);
+    svg::title(out, 0.5 * (left + right), 24, m_axis.title);
     write_grid(out);
     for(const bool is_outline : {false, true})
       for(const Series& s : m_series)
@@ -201,9 +168,7 @@ public:
     write_axes(out);
     write_caption(out, m_series[0], bottom + 54);
     write_caption(out, m_series[1], bottom + 70);
-    out << "</svg>\n";
-    if(!out.flush())
-      throw std::runtime_error(file + " cannot be written");
+    svg::end(out, file);
   }
 };
 

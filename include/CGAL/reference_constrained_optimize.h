@@ -10,24 +10,13 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/sliding_vertices.h>
-#include <CGAL/Reference_constrained_optimization/internal/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
-#include <CGAL/boost/graph/named_params_helper.h>
 #include <CGAL/tags.h>
 
-#include <boost/graph/graph_traits.hpp>
-
-#include <chrono>
-#include <cmath>
-#include <limits>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 namespace CGAL {
 
@@ -203,80 +192,14 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   const NamedParameters& np = parameters::default_values(),
   const NamedParametersReference& np_reference = parameters::default_values())
 {
-  namespace RCO = Reference_constrained_optimization;
-  namespace internal = RCO::internal;
+  namespace internal = Reference_constrained_optimization::internal;
 #ifndef CGAL_LINKED_WITH_TBB
   static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
                 "Parallel_tag is enabled but TBB is unavailable.");
 #endif
-  const auto start = std::chrono::steady_clock::now();
-  const auto& own_np = internal::cgal_parameters(np);
-  const auto& own_np_reference = internal::cgal_parameters(np_reference);
-
-  const internal::Loop_parameters loop_parameters = internal::read_loop_parameters(own_np);
-  auto vpm =
-    parameters::choose_parameter(parameters::get_parameter(own_np, CGAL::internal_np::vertex_point),
-                                 CGAL::get_property_map(CGAL::vertex_point, mesh));
-  auto reference_vpm = parameters::choose_parameter(
-    parameters::get_parameter(own_np_reference, CGAL::internal_np::vertex_point),
-    CGAL::get_const_property_map(CGAL::vertex_point, reference));
-
-  const internal::Mesh_copy copy = internal::read_face_graph(mesh, vpm, "mesh");
-  internal::Reference_surface surface(
-    internal::read_face_graph(reference, reference_vpm, "reference"));
-  const RCO::Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex,
-                                    copy.points.size(),
-                                    internal::mean_edge_length(copy.mesh, copy.points),
-                                    internal::surface_area(copy.mesh, copy.points), surface.area());
-  const internal::Element_set elements(energy, context);
-  RCO::Result result;
-  internal::Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
-  const internal::Constraints constraints = internal::read_constraints(mesh, own_np, copy.mesh);
-  state.is_free = internal::free_vertices(copy.mesh, constraints);
-  internal::place_on_reference(copy.points, surface, state, result);
-  if(loop_parameters.relax_constraints)
-    internal::Sliding_vertices(state, constraints, result);
-  result.times.setup = internal::seconds_since(start);
-
-  const auto& density = energy.density();
-  typedef typename std::decay<decltype(density)>::type Density;
-  const double infinity = std::numeric_limits<double>::infinity();
-  const internal::Global_measure initial = internal::measure(state, density, infinity);
-  result.initial_energy = initial.energy / elements.size();
-  result.initial_number_of_flips = initial.flips;
-  result.initial_number_of_fold_edges = initial.fold_edges;
-  result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
-
-  const auto finish = [&]() {
-    internal::write_points(mesh, vpm, copy.points, state);
-    internal::write_locations(mesh, reference, own_np, state);
-    const internal::Global_measure final = internal::measure(state, density, infinity);
-    result.final_energy = final.energy / elements.size();
-    result.number_of_flips = final.flips;
-    result.number_of_fold_edges = final.fold_edges;
-    result.number_of_nonconvex_quads = final.nonconvex_quads;
-    result.running_time = internal::seconds_since(start);
-  };
-  auto visitor_parameter = parameters::choose_parameter(
-    parameters::get_parameter(own_np, CGAL::internal_np::visitor), RCO::Default_visitor());
-  auto& visitor = internal::unwrap(visitor_parameter);
-  typedef typename std::decay<decltype(visitor)>::type Visitor;
-  if(result.number_of_free_vertices > 0)
-  {
-    internal::Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, loop_parameters,
-                                                                visitor, result, start);
-    try
-    {
-      loop.run();
-    }
-    catch(...)
-    {
-      finish();
-      throw;
-    }
-  }
-  finish();
-  return result;
+  return internal::optimize<ConcurrencyTag>(
+    mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
+    np_reference);
 }
 
 } // namespace CGAL

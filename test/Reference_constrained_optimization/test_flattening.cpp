@@ -65,16 +65,26 @@ struct Expected
   bool keeps_area = true;
 };
 
-// all that a flattening promises, by either way
+// all that a flattening promises, by each way: conformal, mean-value coordinates, equal weights
 void test_flattening(const Shape& shape, const std::string& name, const Expected& expected)
 {
   const Indexed_mesh mesh = indexed(shape);
   internal::Patch_flattener flattener;
-  for(const bool use_conformal : {true, false})
+  for(const int way : {0, 1, 2})
   {
-    const Scope scope("flattening of " + name + (use_conformal ? "" : ", convex border alone"));
+    const bool use_conformal = way == 0;
+    const Scope scope("flattening of " + name +
+                      (way == 0   ? ""
+                       : way == 1 ? ", convex border alone"
+                                  : ", equal weights alone"));
     internal::Flattening_parameters parameters;
     parameters.use_conformal = use_conformal;
+    parameters.use_mean_value = way < 2;
+    if(way == 2) // from afar
+    {
+      parameters.maximum_descent_steps = 500;
+      parameters.descent_tolerance = 1e-6;
+    }
     const internal::Flattening result = flattener.flatten(mesh, shape.points, parameters);
     if(!RCO_CHECK(result.path != internal::Flattening_path::failed))
       continue;

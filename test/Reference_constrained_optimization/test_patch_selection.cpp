@@ -6,7 +6,10 @@
 
 #include "test_util.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
+#include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
+
+#include <limits>
+#include <numeric>
 
 namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
@@ -321,53 +324,57 @@ std::size_t test_growing(const Shape& shape, const std::string& name)
   std::size_t largest = 0;
   for(const double threshold : {0.02, 0.25, 10.})
     for(const int cap : {1, 3, 40, 100000})
-    {
-      internal::Selection_parameters parameters;
-      parameters.developability_threshold = threshold;
-      parameters.maximum_patch_size = cap;
-      internal::Patch_selection selection(mesh, parameters);
-      Random random(3);
-      for(int trial = 0; trial < (std::min)(n, 12); ++trial)
+      for(const bool by_cost : {false, true})
       {
-        const int seed = n <= 12 ? trial : random.index(n);
-        std::vector<char> taken(n, 0);
-        if(trial % 3 == 2)
-          for(int f = 0; f < n; ++f)
-            taken[f] = f != seed && random() < 0.05;
-        const auto is_taken = [&](int f) { return taken[f] != 0; };
-        const std::vector<int> patch = selection.grow(seed, geometry, is_taken);
-        if(!RCO_CHECK(!patch.empty() && patch.front() == seed))
-          continue;
-        RCO_CHECK_LESS_EQUAL(int(patch.size()), cap);
-        RCO_CHECK(is_disk(mesh, patch));
-        // it is a disk at any time
-        for(const double part : {0.2, 0.5, 0.8})
+        internal::Selection_parameters parameters;
+        parameters.developability_threshold = threshold;
+        parameters.maximum_patch_size = cap;
+        parameters.grows_by_cost = by_cost;
+        if(by_cost)
+          parameters.exempt_size = 1;
+        internal::Patch_selection selection(mesh, parameters);
+        Random random(3);
+        for(int trial = 0; trial < (std::min)(n, 12); ++trial)
         {
-          const std::size_t size = 1 + std::size_t(part * double(patch.size() - 1));
-          RCO_CHECK(is_disk(mesh, std::vector<int>(patch.begin(), patch.begin() + size)));
+          const int seed = n <= 12 ? trial : random.index(n);
+          std::vector<char> taken(n, 0);
+          if(trial % 3 == 2)
+            for(int f = 0; f < n; ++f)
+              taken[f] = f != seed && random() < 0.05;
+          const auto is_taken = [&](int f) { return taken[f] != 0; };
+          const std::vector<int> patch = selection.grow(seed, geometry, is_taken);
+          if(!RCO_CHECK(!patch.empty() && patch.front() == seed))
+            continue;
+          RCO_CHECK_LESS_EQUAL(int(patch.size()), cap);
+          RCO_CHECK(is_disk(mesh, patch));
+          // it is a disk at any time
+          for(const double part : {0.2, 0.5, 0.8})
+          {
+            const std::size_t size = 1 + std::size_t(part * double(patch.size() - 1));
+            RCO_CHECK(is_disk(mesh, std::vector<int>(patch.begin(), patch.begin() + size)));
+          }
+          RCO_CHECK_EQUAL(std::set<int>(patch.begin(), patch.end()).size(), patch.size());
+          for(const int f : patch)
+            RCO_CHECK(!taken[f]);
+          // the same again, also in an object that has done nothing else
+          RCO_CHECK(selection.grow(seed, geometry, is_taken) == patch);
+          internal::Patch_selection fresh(mesh, parameters);
+          RCO_CHECK(fresh.grow(seed, geometry, is_taken) == patch);
+          const std::set<int> expected = touched_by_definition(mesh, patch);
+          const std::vector<int> once = fresh.touched(patch);
+          RCO_CHECK(std::set<int>(once.begin(), once.end()) == expected);
+          RCO_CHECK_EQUAL(once.size(), expected.size());
+          // an object that has seen more patches may be done with more faces
+          const std::vector<int> again = selection.touched(patch);
+          const std::set<int> again_set(again.begin(), again.end());
+          const std::set<int> all(patch.begin(), patch.end());
+          RCO_CHECK_EQUAL(again_set.size(), again.size());
+          RCO_CHECK(
+            std::includes(again_set.begin(), again_set.end(), expected.begin(), expected.end()));
+          RCO_CHECK(std::includes(all.begin(), all.end(), again_set.begin(), again_set.end()));
+          largest = (std::max)(largest, patch.size());
         }
-        RCO_CHECK_EQUAL(std::set<int>(patch.begin(), patch.end()).size(), patch.size());
-        for(const int f : patch)
-          RCO_CHECK(!taken[f]);
-        // the same again, also in an object that has done nothing else
-        RCO_CHECK(selection.grow(seed, geometry, is_taken) == patch);
-        internal::Patch_selection fresh(mesh, parameters);
-        RCO_CHECK(fresh.grow(seed, geometry, is_taken) == patch);
-        const std::set<int> expected = touched_by_definition(mesh, patch);
-        const std::vector<int> once = fresh.touched(patch);
-        RCO_CHECK(std::set<int>(once.begin(), once.end()) == expected);
-        RCO_CHECK_EQUAL(once.size(), expected.size());
-        // an object that has seen more patches may be done with more faces
-        const std::vector<int> again = selection.touched(patch);
-        const std::set<int> again_set(again.begin(), again.end());
-        const std::set<int> all(patch.begin(), patch.end());
-        RCO_CHECK_EQUAL(again_set.size(), again.size());
-        RCO_CHECK(
-          std::includes(again_set.begin(), again_set.end(), expected.begin(), expected.end()));
-        RCO_CHECK(std::includes(all.begin(), all.end(), again_set.begin(), again_set.end()));
-        largest = (std::max)(largest, patch.size());
       }
-    }
   return largest;
 }
 
@@ -408,6 +415,28 @@ void test_patches()
   // a closed surface keeps a hole
   const std::size_t on_sphere = test_growing(sphere, "a sphere");
   RCO_CHECK(on_sphere > 200 && on_sphere < sphere.faces.size());
+}
+
+// with a halo without end there is one patch for each component
+void test_rounds()
+{
+  const Scope scope("rounds");
+  const Shape shape = joined(plane_grid(6, 6), icosphere(1), Vector_3(5, 0, 0));
+  const Indexed_mesh mesh = indexed(shape);
+  internal::Selection_parameters parameters;
+  parameters.maximum_patch_size = 20;
+  internal::Patch_selection selection(mesh, parameters);
+  selection.forget_visits();
+  for(const int halo : {0, (std::numeric_limits<int>::max)()})
+  {
+    internal::Patch_rounds rounds(mesh, halo);
+    std::vector<int> seeds(mesh.number_of_faces());
+    std::iota(seeds.begin(), seeds.end(), 0);
+    std::vector<char> is_untouched(seeds.size(), 1);
+    const std::size_t n =
+      rounds.select(seeds, is_untouched, selection, geometry_of(shape, mesh)).size();
+    RCO_CHECK(halo == 0 ? n > 2 : n == 2);
+  }
 }
 
 void test_touched()
@@ -539,6 +568,7 @@ int main()
 {
   test_cone_proxy();
   test_patches();
+  test_rounds();
   test_touched();
   test_threshold();
   test_degenerate_faces();

@@ -36,6 +36,8 @@ struct Loop_parameters
   bool relax_constraints = false;
   bool use_on_surface_steps = true;
   int on_surface_newton_steps = 2; // per proposal
+  bool use_active_set = true;      // else every iteration visits the whole mesh
+  bool accepts_all = false;        // whatever was mapped back is kept, better or not
 };
 
 // Sizes are counted in triangles: a quad is two.

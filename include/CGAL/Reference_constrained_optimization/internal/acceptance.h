@@ -40,11 +40,13 @@ public:
     double troubled; // patches with an element beyond it are flattened
     double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
     double drift; // no step may take a vertex of R further than this from the mesh, or further yet
+    bool accepts_all = false; // what the mover proposes is kept without a test
   };
 
   struct Decision
   {
     bool accepted = false;
+    bool is_final = false; // accepted without a test, and not to be tested later
     Patch_measure before, after;
   };
 
@@ -87,9 +89,10 @@ public:
       if(getenv("DBG2")) fprintf(stderr,"  att %d after %.6g before %.6g offenders %d exceeds %d def %d\n",attempt,decision.after.energy,decision.before.energy,(int)m_offenders.size(),exceeds,decision.after.defects()-decision.before.defects());
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.energy < decision.before.energy;
-      if(!exceeds && (defects < 0 || (defects == 0 && falls)))
+      if(m_limits.accepts_all || (!exceeds && (defects < 0 || (defects == 0 && falls))))
       {
         decision.accepted = true;
+        decision.is_final = m_limits.accepts_all;
         m_accepted = decision.after;
         return decision;
       }

@@ -49,7 +49,8 @@ inline bool commit(Optimization_state& state, Solved_patch& s)
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
   const int change =
     after.inner_defects - before.inner_defects + boundary_folds(state, patch) - folds_before;
-  if(change > 0 || (change == 0 && !(after.energy < before.energy)))
+  const bool is_better = change < 0 || (change == 0 && after.energy < before.energy);
+  if(!is_better && !s.decision.is_final)
   {
     exchange(state, patch, s.placed);
     s.decision.accepted = false;

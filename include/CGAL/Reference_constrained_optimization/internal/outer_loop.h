@@ -71,6 +71,7 @@ public:
     m_limits.bad = 1.5 * typical;
     m_limits.troubled = 2 * m_limits.bad;
     m_limits.sharpest = before.sharpest;
+    m_limits.accepts_all = m_parameters.accepts_all;
     before = measure(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
@@ -113,9 +114,12 @@ private:
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       if(!falls && repairs)
         keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
-      m_is_active = faces_around(mesh, m_moved, 1);
+      if(m_parameters.use_active_set)
+        m_is_active = faces_around(mesh, m_moved, 1);
       const bool moves = std::find(m_moved.begin(), m_moved.end(), char(1)) != m_moved.end();
-      if(!moves || !(repairs || falls))
+      // without a test the energy may rise: that is not convergence either
+      const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
+      if(!moves || !(repairs || falls || rises))
       {
         m_result.status = Status::converged;
         return true;

@@ -43,8 +43,10 @@ struct Flattening
 struct Flattening_parameters
 {
   bool use_conformal = true;
+  bool use_mean_value = true;  // on a convex border, before equal weights are
   double conformal_limit = 20; // distortion of a conformal map beyond which it is no start
   int maximum_descent_steps = 25;
+  double descent_tolerance = 1e-2; // a relative decrease that ends the descent
 };
 
 // Flattens a disk of triangles with CGAL's Surface_mesh_parameterization (paper 3.2). What it
@@ -81,7 +83,7 @@ public:
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
       (is_conformal && flattening.distortion < parameters.conformal_limit) ||
-      (!m_has_empty_edge && // its weights are not defined there
+      (parameters.use_mean_value && !m_has_empty_edge && // its weights are not defined there
        run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
            flattening) &&
        is_usable(triangles, flattening.positions)) ||
@@ -96,7 +98,7 @@ public:
        flattening.distortion > nearly_isometric)
     {
       const std::vector<Vector_2> start = flattening.positions;
-      descend(triangles, flattening.positions, parameters.maximum_descent_steps);
+      descend(triangles, flattening.positions, parameters);
       if(!is_locally_injective(triangles, flattening.positions))
         flattening.positions = start;
       flattening.distortion = distortion(triangles, flattening.positions);
@@ -187,7 +189,9 @@ private:
     return true;
   }
 
-  void descend(const Indexed_mesh& triangles, std::vector<Vector_2>& u, int maximum_steps)
+  void descend(const Indexed_mesh& triangles,
+               std::vector<Vector_2>& u,
+               const Flattening_parameters& parameters)
   {
     Planar_problem problem;
     for(int t = 0; t < triangles.number_of_faces(); ++t)
@@ -199,7 +203,8 @@ private:
     }
     problem.is_free.assign(u.size(), 1);
     m_optimizer.analyze(problem);
-    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, maximum_steps, 1e-2);
+    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u,
+                         parameters.maximum_descent_steps, parameters.descent_tolerance);
   }
 
   double distortion(const Indexed_mesh& triangles, const std::vector<Vector_2>& u) const

@@ -15,7 +15,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Rounds of face-disjoint patches. No patch of a round starts within `halo` rings of another one: it
-// would be squeezed and touch little.
+// would be squeezed and touch little. With a halo as large as the mesh a round has one patch of each
+// connected component.
 class Patch_rounds
 {
 public:
@@ -74,7 +75,7 @@ private:
     for(const int f : patch)
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         mark(m_mesh.corner_vertex[c], front);
-    for(int ring = 0; ring < m_halo; ++ring)
+    for(int ring = 0; ring < m_halo && !front.empty(); ++ring)
     {
       std::vector<int> next;
       for(const int v : front)

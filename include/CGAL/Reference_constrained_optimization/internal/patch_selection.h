@@ -24,6 +24,9 @@ struct Selection_parameters
   int maximum_patch_size = 0;             // in faces; 0: chosen by the size of the mesh
   int exempt_size = 70;                   // the first faces of a patch need not fit the proxy
   bool is_flattened = true; // else any region will do: neither a disk nor a cone is wanted
+  // As in the paper: the cheapest face comes next, and the proxy stays as it is at the seed. What is
+  // over the threshold then ends the patch, for all that is left costs as much.
+  bool grows_by_cost = false;
 };
 
 // Normals, areas and centroids of the faces, as the growing needs them.
@@ -63,9 +66,9 @@ struct Face_geometry
   }
 };
 
-// Grows nearly developable disks (paper 3.3). The queue is ordered by the length of the path from
-// the seed rather than by the fitting cost, which is kept as a filter: that makes compact patches,
-// with a larger share of faces away from the boundary.
+// Grows nearly developable disks (paper 3.3). Unless `grows_by_cost` is set the queue is ordered by
+// the length of the path from the seed rather than by the fitting cost, which is kept as a filter:
+// that makes compact patches, with a larger share of faces away from the boundary.
 class Patch_selection
 {
 public:
@@ -109,7 +112,7 @@ public:
       m_face_stamp[f] = m_stamp;
       if(m_parameters.is_flattened)
         fit.add(geometry.normals[f], geometry.areas[f]);
-      if(m_parameters.is_flattened && patch.size() == next_fit)
+      if(m_parameters.is_flattened && !m_parameters.grows_by_cost && patch.size() == next_fit)
       {
         proxy = fit.fit();
         next_fit *= 2;
@@ -121,9 +124,12 @@ public:
         if(o < 0)
           continue;
         const int g = m_mesh.corner_face[o];
-        if(!in_patch(g) && !is_taken(g))
-          queue.push(
-            Entry(entry.first + (geometry.centroids[f] - geometry.centroids[g]).norm(), g));
+        if(in_patch(g) || is_taken(g))
+          continue;
+        queue.push(Entry(m_parameters.grows_by_cost
+                           ? proxy.cost(geometry.normals[g])
+                           : entry.first + (geometry.centroids[f] - geometry.centroids[g]).norm(),
+                         g));
       }
     }
     return patch;

@@ -1,0 +1,37 @@
+#ifndef RCO_BENCHMARK_SHAPE_H
+#define RCO_BENCHMARK_SHAPE_H
+
+#include "meshes.h"
+
+#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+
+// The shape of a mesh: closest points and normals.
+class Shape
+{
+public:
+  explicit Shape(const Mesh& mesh)
+    : m_surface(CGAL::Reference_constrained_optimization::internal::read_measured_mesh(
+        mesh, CGAL::parameters::default_values(), "shape"))
+  {}
+  Kernel::Point_3 project(const Kernel::Point_3& p) const
+  {
+    const Eigen::Vector3d q = closest(p).position;
+    return Kernel::Point_3(q.x(), q.y(), q.z());
+  }
+  Kernel::Vector_3 normal(const Kernel::Point_3& p) const
+  {
+    const Eigen::Vector3d n = m_surface.normal(closest(p)).normalized();
+    return Kernel::Vector_3(n.x(), n.y(), n.z());
+  }
+
+private:
+  CGAL::Reference_constrained_optimization::internal::Surface_point
+  closest(const Kernel::Point_3& p) const
+  {
+    return m_surface.closest(Eigen::Vector3d(p.x(), p.y(), p.z()));
+  }
+  CGAL::Reference_constrained_optimization::internal::Reference_surface m_surface;
+};
+
+#endif // RCO_BENCHMARK_SHAPE_H
