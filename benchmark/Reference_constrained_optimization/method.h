@@ -29,7 +29,7 @@ inline void set_method(const std::string& method,
   if(method == "ours")
     return;
   p.use_on_surface_steps = false;
-  p.maximum_revisits = 0;
+  p.use_finishing_stage = false;
   if(method == "plain")
     return;
   // patches: one after the other, each as large as the proxy lets it grow

@@ -160,9 +160,8 @@ private:
     double h11 = f.d11, h12 = f.d12, h22 = f.d22;
     if(project)
     {
-      static const bool abs_ = getenv("ABS") != nullptr;
-      twist = abs_ ? std::abs(twist) : (std::max)(twist, 0.);
-      flip = abs_ ? std::abs(flip) : (std::max)(flip, 0.);
+      twist = (std::max)(twist, 0.);
+      flip = (std::max)(flip, 0.);
       const double mean = 0.5 * (h11 + h22), half = 0.5 * (h11 - h22);
       const double radius = std::sqrt(half * half + h12 * h12);
       const double low = mean - radius, high = mean + radius;

@@ -136,23 +136,25 @@ private:
   void match_opposites()
   {
     const int n = int(corner_vertex.size());
+    std::vector<int> targets(n);
+    for(int c = 0; c < n; ++c)
+      targets[c] = target(c);
     opposite.assign(n, -1);
     for(int c = 0; c < n; ++c)
     {
-      const int s = source(c), t = target(c);
+      const int s = source(c), t = targets[c];
       if(s == t)
         throw Invalid_input("face " + std::to_string(corner_face[c]) + " has an edge from vertex " +
                             std::to_string(s) + " to itself");
       int matches = 0, twins = 0;
       for(int k = vertex_begin[t]; k < vertex_begin[t + 1]; ++k)
-        if(target(vertex_corners[k]) == s)
+        if(targets[vertex_corners[k]] == s)
         {
           opposite[c] = vertex_corners[k];
           ++matches;
         }
       for(int k = vertex_begin[s]; k < vertex_begin[s + 1]; ++k)
-        if(target(vertex_corners[k]) == t)
-          ++twins;
+        twins += targets[vertex_corners[k]] == t;
       if(matches > 1 || twins > 1)
         throw Invalid_input("the edge between vertices " + std::to_string(s) + " and " +
                             std::to_string(t) + " (face " + std::to_string(corner_face[c]) +

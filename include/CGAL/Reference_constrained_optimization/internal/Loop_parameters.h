@@ -13,8 +13,6 @@
 #include <cstddef>
 #include <limits>
 
-#include <cstdlib>
-inline double TUNE(const char* n,double d){ const char* s=getenv(n); return s?atof(s):d; }
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
@@ -25,17 +23,17 @@ struct Loop_parameters
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 4e-3;
-  double movement_tolerance = 0.02; // part of the mean edge length at a vertex
+  double movement_tolerance = 0.01; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
-  int proposals_per_patch = 2;
-  int maximum_revisits = 10; // of the worst elements, at the end
+  int proposals_per_patch = 3;
+  bool use_finishing_stage = true;
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
   bool relax_constraints = false;
   bool use_on_surface_steps = true;
-  int on_surface_newton_steps = 2; // per proposal
+  int on_surface_newton_steps = 1; // per proposal
   bool use_active_set = true;      // else every iteration visits the whole mesh
   bool accepts_all = false;        // whatever was mapped back is kept, better or not
 };
@@ -53,7 +51,7 @@ inline int triangles_to_faces(const Indexed_mesh& mesh, double triangles)
 inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
 {
   const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
-  const double largest = TUNE("PSMAX",4000);
+  const double largest = 4000;
   return triangles_to_faces(
     mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
 }
@@ -65,19 +63,23 @@ inline Selection_parameters sized(Selection_parameters selection, const Indexed_
   return selection;
 }
 
-inline Selection_parameters small(Selection_parameters selection, const Indexed_mesh& mesh)
-{
-  const int size = triangles_to_faces(mesh, 200);
-  if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
-    selection.maximum_patch_size = size;
-  return selection;
-}
-
-// of the patches that are optimized on the surface
+// Of the patches that are optimized on the surface. In a large patch a vertex can go a long way at
+// once; a large mesh is divided nevertheless, so that there is work for several threads.
 inline int on_surface_patch_size(const Selection_parameters& selection, const Indexed_mesh& mesh)
 {
-  return selection.maximum_patch_size > 0 ? selection.maximum_patch_size
-                                          : patch_size(mesh, TUNE("PS", 4.5), TUNE("PSMIN",700));
+  if(selection.maximum_patch_size > 0)
+    return selection.maximum_patch_size;
+  const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+  const double smallest = getenv("SM")?atof(getenv("SM")):4000, largest = 20000, number = 6;
+  return triangles_to_faces(
+    mesh, (std::min)(largest, (std::max)(smallest, triangles / number)));
+}
+
+// of the patches around bad elements
+inline int small_patch_size(const Selection_parameters& selection, const Indexed_mesh& mesh)
+{
+  const int size = triangles_to_faces(mesh, 400);
+  return selection.maximum_patch_size > 0 ? (std::min)(size, selection.maximum_patch_size) : size;
 }
 
 } // namespace internal

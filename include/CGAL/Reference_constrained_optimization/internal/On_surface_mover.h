@@ -5,13 +5,17 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 
+#include <CGAL/Reference_constrained_optimization/internal/face_towards.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_newton.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
 #include <CGAL/Reference_constrained_optimization/internal/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/tangent_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/tangent_step.h>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -27,8 +31,6 @@ namespace internal {
 // second column of T_i is zero for vertices that slide along a line.
 struct Tangent_problem
 {
-  typedef Eigen::Matrix<double, 3, 2> Frame;
-
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
   std::vector<char> is_free; // per vertex
@@ -73,20 +75,21 @@ public:
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
     m_newton.analyze(m_problem);
+    m_strain_resistance = initial_resistance;
+    const bool proposes = step(patch, density);
     m_optimization_time += seconds_since(start);
-    return propose_again(patch, {}, density);
+    return proposes;
   }
 
   // from where the vertices are now
   template <typename Density>
-  bool propose_again(const Patch& patch, const std::vector<double>&, const Density& density)
+  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
-    linearize(patch);
-    m_motion.assign(patch.vertices.size(), Vector_2::Zero());
-    const int steps = m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8).steps;
+    adapt(patch, steps);
+    const bool proposes = step(patch, density);
     m_optimization_time += seconds_since(start);
-    return steps > 0;
+    return proposes;
   }
 
   // the vertex after the part t of its way; false if R is not found there
@@ -95,51 +98,68 @@ public:
     const Placed_vertex& from = patch.placed[v];
     if(patch.slides(v))
       return slide(patch, v, t * m_motion[v](0), m_reference, result);
-    const Vector_3 way = t * (m_frames[v] * m_motion[v]);
-    const Vector_3 target = from.position + way;
-    const Surface_point foot = m_reference.descend(target, from.on_reference.face);
-    const Vector_3 normal = m_reference.normal(foot);
-    // a tangent leaves R slowly; else the surface ends here, or turns away
-    if((foot.position - target).squaredNorm() > 0.25 * way.squaredNorm() ||
-       !(normal.dot(from.normal) > 0))
-      return false;
-    result.on_reference = foot;
-    result.position = foot.position;
-    result.normal = normal;
-    return true;
+    return step_on_surface(m_reference, from, t * (m_frames[v] * m_motion[v]), result);
   }
 
   double motion_length(int v) const { return m_motion[v].norm(); }
   double optimization_time() const { return m_optimization_time; }
 
 private:
-  static Tangent_problem::Frame frame(const Vector_3& normal)
+  // Newton steps from where the vertices are now
+  template <typename Density>
+  bool step(const Patch& patch, const Density& density)
   {
-    int axis = 0;
-    normal.cwiseAbs().minCoeff(&axis);
-    Tangent_problem::Frame result;
-    result.col(0) = normal.cross(Vector_3::Unit(axis)).normalized();
-    result.col(1) = normal.cross(result.col(0)).normalized();
-    return result;
+    linearize(patch, density);
+    m_motion.assign(patch.vertices.size(), Vector_2::Zero());
+    m_newton.set_strain_resistance(m_strain_resistance);
+    return m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8).steps > 0;
   }
 
-  // R's own plane where there is one: only in it is the model of first order
-  Vector_3 tangent_normal(const Placed_vertex& v) const
+  // the next step may be bolder if nearly all of the last one was taken, and must be more careful if
+  // much of it was cut
+  void adapt(const Patch& patch, const std::vector<double>& steps)
   {
-    const bool is_inside = v.on_reference.barycentric.minCoeff() > 0;
-    return is_inside ? m_reference.face_normal(v.on_reference.face) : v.normal;
+    double taken = 0;
+    for(std::size_t v = 0; v < steps.size(); ++v)
+      taken += patch.is_free[v] ? steps[v] : 0;
+    taken /= patch.number_of_free_vertices;
+    if(taken > 0.95)
+      m_strain_resistance = (std::max)(0.2 * initial_resistance, 0.4 * m_strain_resistance);
+    else if(taken < 0.8)
+      m_strain_resistance = (std::min)(6 * initial_resistance, 2.5 * m_strain_resistance);
   }
 
-  void linearize(const Patch& patch)
+  template <typename Density>
+  void linearize(const Patch& patch, const Density& density)
   {
+    find_planes(patch);
+    find_descent(patch, density);
     m_frames.resize(patch.vertices.size());
     for(std::size_t v = 0; v < patch.vertices.size(); ++v)
       if(patch.slides(int(v)))
         m_frames[v] << patch.lines->tangent(patch.placed[v].on_line), Vector_3::Zero();
+      else if(patch.is_free[v])
+      {
+        // only R's own planes make the model one of first order; where several meet it is the one
+        // that the vertex is about to enter
+        const Surface_point& on_reference = patch.placed[v].on_reference;
+        m_frames[v] = tangent_frame(
+          m_reference.face_normal(face_towards(m_reference, on_reference, m_descent[v])));
+      }
       else
-        m_frames[v] = frame(tangent_normal(patch.placed[v]));
+        m_frames[v].setZero();
+    m_problem.corner_maps.resize(3 * patch.elements.size());
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+      for(int i = 0; i < 3; ++i)
+        m_problem.corner_maps[3 * e + i] =
+          m_planes[e].transpose() * m_frames[patch.elements[e].vertices[i]];
+  }
+
+  // the planes of the elements, and their shapes there
+  void find_planes(const Patch& patch)
+  {
+    m_planes.clear();
     m_problem.shapes.clear();
-    m_problem.corner_maps.clear();
     for(const Element_set::Element& e : patch.elements)
     {
       const Placed_vertex* p[3];
@@ -152,21 +172,50 @@ private:
         normal *= normal.dot(outward) < 0 ? -1 : 1;
       else
         normal = outward; // no plane of its own
-      const Tangent_problem::Frame plane = frame(normal);
+      m_planes.push_back(tangent_frame(normal));
       Eigen::Matrix2d shape;
-      shape.col(0) = plane.transpose() * a;
-      shape.col(1) = plane.transpose() * b;
+      shape.col(0) = m_planes.back().transpose() * a;
+      shape.col(1) = m_planes.back().transpose() * b;
       m_problem.shapes.push_back(shape);
-      for(int i = 0; i < 3; ++i)
-        m_problem.corner_maps.push_back(plane.transpose() * m_frames[e.vertices[i]]);
     }
   }
 
+  // the negative gradient in space at the vertices that lie on vertices and edges of R
+  template <typename Density>
+  void find_descent(const Patch& patch, const Density& density)
+  {
+    m_descent.assign(patch.vertices.size(), Vector_3::Zero());
+    const auto is_on_edge = [&](int v) {
+      return patch.is_free[v] && !(patch.placed[v].on_reference.barycentric.minCoeff() > 0);
+    };
+    Eigen::Vector4d gradient;
+    Eigen::Matrix4d unused;
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+    {
+      const Element_set::Element& element = patch.elements[e];
+      const std::array<int, 3>& t = element.vertices;
+      if(!is_on_edge(t[0]) && !is_on_edge(t[1]) && !is_on_edge(t[2]))
+        continue;
+      projected_derivatives(density, m_problem.shapes[e] * element.rest_inverse, gradient, unused, 0);
+      const Eigen::Matrix2d by_jacobian = Eigen::Map<const Eigen::Matrix2d>(gradient.data());
+      const Eigen::Matrix<double, 3, 2> by_edges =
+        m_planes[e] * (by_jacobian * element.rest_inverse.transpose());
+      m_descent[t[0]] += by_edges.col(0) + by_edges.col(1);
+      m_descent[t[1]] -= by_edges.col(0);
+      m_descent[t[2]] -= by_edges.col(1);
+    }
+  }
+
+  static constexpr double initial_resistance = 0.05;
+
   const Reference_surface& m_reference;
   int m_newton_steps;
+  double m_strain_resistance = 0;
   Projected_newton m_newton;
   Tangent_problem m_problem;
-  std::vector<Tangent_problem::Frame> m_frames; // per vertex
+  std::vector<Tangent_frame> m_frames; // per vertex
+  std::vector<Tangent_frame> m_planes; // per element
+  std::vector<Vector_3> m_descent;     // per vertex
   std::vector<Vector_2> m_motion;               // per vertex, in its frame
   double m_optimization_time = 0;
 };

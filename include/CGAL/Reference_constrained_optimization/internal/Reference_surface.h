@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <queue>
 #include <unordered_set>
 #include <utility>
@@ -38,44 +39,17 @@ class Reference_surface
   typedef Triangle_tree<Kernel, Triangle_iterator> Tree;
 
 public:
-  explicit Reference_surface(const Mesh_copy& copy) : m_points(copy.points)
+  explicit Reference_surface(const Mesh_copy& copy)
+    : m_points(copy.points),
+      m_search(std::make_unique<Search>())
   {
-    std::vector<int> begins(1, 0), corners;
-    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
-      for(const auto& t : split_face(copy.mesh, copy.points, f))
-      {
-        for(const int c : t)
-          corners.push_back(copy.mesh.corner_vertex[c]);
-        begins.push_back(int(corners.size()));
-        m_original_face.push_back(f);
-      }
-    m_mesh = Indexed_mesh(std::move(begins), std::move(corners), int(m_points.size()));
+    split(copy);
     compute_normals();
     m_diagonal = bounding_box_diagonal(m_points);
     m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
     m_area = surface_area(m_mesh, m_points);
-
-    // degenerate triangles hold no point that their neighbours do not, and confuse the tree
-    for(int f = 0; f < m_mesh.number_of_faces(); ++f)
-    {
-      Kernel::Point_3 p[3];
-      for(int i = 0; i < 3; ++i)
-      {
-        const Vector_3& q = corner_point(f, i);
-        p[i] = Kernel::Point_3(q.x(), q.y(), q.z());
-      }
-      const Kernel::Triangle_3 triangle(p[0], p[1], p[2]);
-      if(!triangle.is_degenerate())
-      {
-        m_triangles.push_back(triangle);
-        m_triangle_face.push_back(f);
-      }
-    }
-    if(m_triangles.empty())
+    if(!(m_area > 0))
       throw Invalid_input("reference: every face has zero area");
-    m_tree = std::make_unique<Tree>(m_triangles.begin(), m_triangles.end());
-    m_tree->build();
-    m_tree->accelerate_distance_queries();
   }
 
   const Indexed_mesh& mesh() const { return m_mesh; }
@@ -128,11 +102,20 @@ public:
       f, closest_barycentric(p, corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)));
   }
 
+  // the vertex as a point of R; it must have a face
+  Surface_point at_vertex(int v) const
+  {
+    const int c = m_mesh.vertex_corners[m_mesh.vertex_begin[v]], f = m_mesh.corner_face[c];
+    return {m_points[v], f, Vector_3::Unit(c - m_mesh.face_begin[f])};
+  }
+
   // closest point of all of R, by the tree
   Surface_point closest(const Vector_3& p) const
   {
-    const auto hit = m_tree->closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()));
-    return closest_in_face(p, m_triangle_face[hit.second - m_triangles.begin()]);
+    std::call_once(m_search->is_built, [this]() { build_tree(); });
+    const Search& s = *m_search;
+    const auto hit = s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()));
+    return closest_in_face(p, s.face[hit.second - s.triangles.begin()]);
   }
 
   // local closest point, from `face` on
@@ -180,6 +163,62 @@ public:
   }
 
 private:
+  // built when it is first asked, which may be never
+  struct Search
+  {
+    std::once_flag is_built;
+    std::vector<Kernel::Triangle_3> triangles;
+    std::vector<int> face; // per triangle
+    Tree tree;
+  };
+
+  void build_tree() const
+  {
+    Search& s = *m_search;
+    for(int f = 0; f < m_mesh.number_of_faces(); ++f)
+    {
+      Kernel::Point_3 p[3];
+      for(int i = 0; i < 3; ++i)
+      {
+        const Vector_3& q = corner_point(f, i);
+        p[i] = Kernel::Point_3(q.x(), q.y(), q.z());
+      }
+      // degenerate triangles hold no point that their neighbours do not, and confuse the tree
+      const Kernel::Triangle_3 triangle(p[0], p[1], p[2]);
+      if(!triangle.is_degenerate())
+      {
+        s.triangles.push_back(triangle);
+        s.face.push_back(f);
+      }
+    }
+    s.tree.insert(s.triangles.begin(), s.triangles.end());
+    s.tree.build();
+    s.tree.accelerate_distance_queries();
+  }
+
+  // quads into triangles
+  void split(const Mesh_copy& copy)
+  {
+    const int n = copy.mesh.number_of_faces();
+    std::vector<int> begins(1, 0), corners;
+    if(copy.mesh.number_of_corners() == 3 * n)
+    {
+      m_mesh = copy.mesh;
+      for(int f = 0; f < n; ++f)
+        m_original_face.push_back(f);
+      return;
+    }
+    for(int f = 0; f < n; ++f)
+      for(const auto& t : split_face(copy.mesh, copy.points, f))
+      {
+        for(const int c : t)
+          corners.push_back(copy.mesh.corner_vertex[c]);
+        begins.push_back(int(corners.size()));
+        m_original_face.push_back(f);
+      }
+    m_mesh = Indexed_mesh(std::move(begins), std::move(corners), int(m_points.size()));
+  }
+
   void compute_normals()
   {
     m_normals.assign(m_points.size(), Vector_3::Zero());
@@ -201,9 +240,7 @@ private:
   std::vector<Vector_3> m_points;
   std::vector<Vector_3> m_normals;
   std::vector<int> m_original_face;
-  std::vector<Kernel::Triangle_3> m_triangles;
-  std::vector<int> m_triangle_face;
-  std::unique_ptr<Tree> m_tree;
+  std::unique_ptr<Search> m_search;
   double m_diagonal = 0, m_mean_edge_length = 0, m_area = 0;
 };
 

@@ -35,11 +35,12 @@ public:
   // bounds on single elements and on single vertices of R
   struct Limits
   {
-    double worst;    // no step may take an element beyond it, or further beyond
-    double bad;      // elements beyond it are allowed more drift
-    double troubled; // patches with an element beyond it are flattened
-    double sharpest; // no step may take the cosine of an angle beyond it, or further beyond
-    double drift; // no step may take a vertex of R further than this from the mesh, or further yet
+    double worst = 0;    // no step may take an element beyond it, or further beyond
+    double sharpest = 1; // no step may take the cosine of an angle beyond it, or further beyond
+    double drift = 0; // no step may take a vertex of R further than this from the mesh, or further yet
+    double bad = 0;   // elements beyond it are allowed more drift
+    // elements with a density or a cosine of an angle beyond these are what a search is for
+    double searched = 0, sharp = 1;
     bool accepts_all = false; // what the mover proposes is kept without a test
   };
 
@@ -86,7 +87,6 @@ public:
       decision.after = sum_up(patch, m_after);
       visit_guests(patch, state.reference);
       const bool exceeds = find_offenders(patch);
-      if(getenv("DBG2")) fprintf(stderr,"  att %d after %.6g before %.6g offenders %d exceeds %d def %d\n",attempt,decision.after.energy,decision.before.energy,(int)m_offenders.size(),exceeds,decision.after.defects()-decision.before.defects());
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.energy < decision.before.energy;
       if(m_limits.accepts_all || (!exceeds && (defects < 0 || (defects == 0 && falls))))
@@ -350,7 +350,7 @@ private:
     m_offenders.clear();
   }
 
-  Limits m_limits{0, 0, 0, 1, 0};
+  Limits m_limits;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;
   std::vector<Patch::Guest> m_guests;

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -64,23 +66,17 @@ std::vector<std::pair<double, int>> face_densities(const Optimization_state& sta
   return result;
 }
 
-// What only a flattening may mend: faces that are turned over, folded, or not convex, and those with
-// an element beyond `troubled`.
-template <typename Density>
-std::vector<char>
-troubled_faces(const Optimization_state& state, const Density& density, double troubled)
+// What only a flattening may mend: faces that are turned over, folded, or not convex.
+inline std::vector<char> defective_faces(const Optimization_state& state)
 {
   const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
   std::vector<char> result(mesh.number_of_faces(), 0);
-  for(const std::pair<double, int>& d : face_densities(state, density))
-    result[d.second] = d.first > troubled;
   std::vector<Vector_3> normals(mesh.number_of_faces());
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
     normals[f] = face_normal(mesh, vertex, f);
-    if(is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f))
-      result[f] = 1;
+    result[f] = is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f);
   }
   for(int c = 0; c < mesh.number_of_corners(); ++c)
   {
@@ -89,6 +85,57 @@ troubled_faces(const Optimization_state& state, const Density& density, double t
       result[mesh.corner_face[c]] = result[mesh.corner_face[o]] = 1;
   }
   return result;
+}
+
+// The faces with an element beyond `bad` where at least `smallest` of them hang together, by edges. A
+// few bad elements are a matter of their vertices; a whole region may have to be laid out anew.
+template <typename Density>
+std::vector<char>
+bad_regions(const Optimization_state& state, const Density& density, double bad, int smallest)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  std::vector<char> result(mesh.number_of_faces(), 0), is_seen(mesh.number_of_faces(), 1);
+  for(const std::pair<double, int>& d : face_densities(state, density))
+    is_seen[d.second] = !(d.first > bad);
+  std::vector<int> region;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    if(is_seen[f])
+      continue;
+    is_seen[f] = 1;
+    region.assign(1, f);
+    for(std::size_t i = 0; i < region.size(); ++i)
+      for(int c = mesh.face_begin[region[i]]; c < mesh.face_begin[region[i] + 1]; ++c)
+      {
+        const int g = mesh.opposite[c] < 0 ? -1 : mesh.corner_face[mesh.opposite[c]];
+        if(g >= 0 && !is_seen[g])
+        {
+          is_seen[g] = 1;
+          region.push_back(g);
+        }
+      }
+    if(int(region.size()) >= smallest)
+      for(const int g : region)
+        result[g] = 1;
+  }
+  return result;
+}
+
+// The faces with an element beyond `bad`, the worst first: of a large mesh a five-hundredth and some.
+template <typename Density>
+std::vector<std::pair<double, int>>
+worst_faces(const Optimization_state& state, const Density& density, double bad)
+{
+  std::vector<std::pair<double, int>> faces = face_densities(state, density);
+  faces.erase(std::remove_if(faces.begin(), faces.end(),
+                             [&](const std::pair<double, int>& d) { return !(d.first > bad); }),
+              faces.end());
+  const std::size_t most = 20 + std::size_t(state.mesh.number_of_faces()) / 500;
+  const std::size_t n = (std::min)(most, faces.size());
+  std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
+                    std::greater<std::pair<double, int>>());
+  faces.resize(n);
+  return faces;
 }
 
 // forgets among the vertices that moved those further than a ring from bad elements

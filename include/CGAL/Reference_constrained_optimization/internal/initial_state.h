@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/iterator.h>
@@ -78,7 +79,7 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
   return is_free;
 }
 
-// Finds every vertex' point of R, once, by the tree, and moves free vertices onto it. A reference
+// Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free vertices onto it. A reference
 // that is oriented the other way is turned round.
 inline void place_on_reference(const std::vector<Vector_3>& points,
                                Reference_surface& reference,
@@ -93,6 +94,10 @@ inline void place_on_reference(const std::vector<Vector_3>& points,
     largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
 
+  const Indexed_mesh& surface = reference.mesh();
+  const Point_index index(reference.points(), [&](int v) {
+    return surface.vertex_begin[v] < surface.vertex_begin[v + 1];
+  });
   state.vertices.resize(points.size());
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {
@@ -100,7 +105,8 @@ inline void place_on_reference(const std::vector<Vector_3>& points,
     placed.position = points[v];
     if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
       continue;
-    placed.on_reference = reference.closest(points[v]);
+    const int twin = index.find(points[v]);
+    placed.on_reference = twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
     const double distance = (placed.on_reference.position - points[v]).norm();
     if(distance > limit)
       throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +

@@ -24,6 +24,27 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
+// Whether the reference is the mesh itself, with the points that it has; other point maps are not
+// compared.
+template <typename PolygonMesh,
+          typename ReferenceMesh,
+          typename NamedParameters,
+          typename NamedParametersReference>
+bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
+                      [[maybe_unused]] const ReferenceMesh& reference,
+                      const NamedParameters&,
+                      const NamedParametersReference&)
+{
+  if constexpr(std::is_same<PolygonMesh, ReferenceMesh>::value &&
+               parameters::is_default_parameter<NamedParameters,
+                                                CGAL::internal_np::vertex_point_t>::value &&
+               parameters::is_default_parameter<NamedParametersReference,
+                                                CGAL::internal_np::vertex_point_t>::value)
+    return &mesh == &reference;
+  else
+    return false;
+}
+
 // What `CGAL::reference_constrained_optimize()` does once its numbers are read: `loop_parameters`
 // also has switches that the public function does not offer. Of the named parameters the maps and
 // the visitor are used.
@@ -52,7 +73,9 @@ Result optimize(PolygonMesh& mesh,
     CGAL::get_const_property_map(CGAL::vertex_point, reference));
 
   const Mesh_copy copy = read_face_graph(mesh, vpm, "mesh");
-  Reference_surface surface(read_face_graph(reference, reference_vpm, "reference"));
+  Reference_surface surface(is_own_reference(mesh, reference, own_np, own_np_reference)
+                              ? copy
+                              : read_face_graph(reference, reference_vpm, "reference"));
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
                                surface_area(copy.mesh, copy.points), surface.area());

@@ -7,8 +7,10 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/commit.h>
+#include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
@@ -51,8 +53,8 @@ public:
       m_start(start),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
-      m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
       m_partition(state.mesh, on_surface_patch_size(parameters.selection, state.mesh)),
+      m_small_partition(state.mesh, small_patch_size(parameters.selection, state.mesh)),
       m_rounds(state.mesh, parameters.halo),
       m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
   {}
@@ -69,7 +71,6 @@ public:
     m_rest_energy = rest_energy(m_state, m_density);
     m_limits.worst = before.worst;
     m_limits.bad = 1.5 * typical;
-    m_limits.troubled = 2 * m_limits.bad;
     m_limits.sharpest = before.sharpest;
     m_limits.accepts_all = m_parameters.accepts_all;
     before = measure(m_state, m_density, m_cap);
@@ -89,8 +90,9 @@ public:
     m_is_active = faces_around(mesh, m_state.is_free, 0);
 
     m_result.status = Status::iteration_limit;
-    if(iterate_to_convergence(before))
-      revisit_worst();
+    if(iterate_to_convergence(before) && search_worst() && m_parameters.use_finishing_stage &&
+       prizes_angles(m_state.elements))
+      finish_angles();
   }
 
 private:
@@ -102,6 +104,7 @@ private:
     {
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
+      m_has_refused = false;
       ++m_result.number_of_iterations;
       const bool complete = visit_active();
       const Global_measure after = measure(m_state, m_density, m_cap);
@@ -114,38 +117,54 @@ private:
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       if(!falls && repairs)
         keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
-      if(m_parameters.use_active_set)
-        m_is_active = faces_around(mesh, m_moved, 1);
       const bool moves = std::find(m_moved.begin(), m_moved.end(), char(1)) != m_moved.end();
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
-      if(!moves || !(repairs || falls || rises))
+      before = after;
+      if(moves && (repairs || falls || rises))
+      {
+        if(m_parameters.use_active_set)
+          m_is_active = faces_around(mesh, m_moved, 1);
+      }
+      else if(!divide_further())
       {
         m_result.status = Status::converged;
         return true;
       }
-      before = after;
     }
     return m_parameters.number_of_iterations > 0;
   }
 
-  // What is bad is flattened; then all regions are optimized on the surface, where that is allowed.
+  // A large patch that was refused may be held up by a few places: the next iteration visits the same
+  // faces in smaller ones. False if that is no way out.
+  bool divide_further()
+  {
+    const int smallest = 1000, parts = 4;
+    const int size = m_partition.patch_size() / parts;
+    if(!m_parameters.use_on_surface_steps || !m_has_refused || size < smallest)
+      return false;
+    m_partition.set_patch_size(size);
+    return true;
+  }
+
+  // What is turned over or folded, or bad over a whole region, is flattened: steps on the surface do
+  // not mend it. Then all regions are optimized on the surface, where that is allowed.
   bool visit_active()
   {
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection);
-    static const int order = int(TUNE("ORDER",1));
-    static const double tr = TUNE("TROUBLE",1);
-    const auto flat = [&](double troubled) {
-      std::vector<char> is_wanted = troubled_faces(m_state, m_density, troubled);
-      is_wanted = faces_around(m_state.mesh, vertices_of(m_state.mesh, is_wanted), 2);
-      for(std::size_t f = 0; f < is_wanted.size(); ++f)
-        is_wanted[f] = is_wanted[f] && m_is_active[f];
-      return visit(is_wanted, m_selection);
-    };
-    if(order == 0)
-      return flat(tr * m_limits.troubled) && visit_on_surface(m_is_active);
-    return flat(1e300) && visit_on_surface(m_is_active) && (order == 1 || flat(tr * m_limits.troubled));
+    const Indexed_mesh& mesh = m_state.mesh;
+    const int smallest_region = getenv("REG")?atoi(getenv("REG")):12;
+    std::vector<char> is_wanted = defective_faces(m_state);
+    const std::vector<char> is_bad =
+      bad_regions(m_state, m_density, (getenv("BAD")?atof(getenv("BAD")):2) * m_limits.bad, smallest_region);
+    for(std::size_t f = 0; f < is_wanted.size(); ++f)
+      is_wanted[f] = is_wanted[f] || is_bad[f];
+    is_wanted = faces_around(mesh, vertices_of(mesh, is_wanted), 2);
+    for(std::size_t f = 0; f < is_wanted.size(); ++f)
+      is_wanted[f] = is_wanted[f] && m_is_active[f];
+    return visit(is_wanted, m_selection) &&
+           visit_once(m_is_active, m_partition, Moves::on_surface, m_density);
   }
 
   // What is left to gain is what the energy has above that of elements that are all at rest.
@@ -158,32 +177,61 @@ private:
     return before - after > m_parameters.energy_tolerance * scale;
   }
 
-  // The worst elements once more, by themselves, in small patches around them, as long as that
-  // helps: in a large patch their gain may be lost with a step that fails elsewhere.
-  void revisit_worst()
+  // The elements that Newton steps left behind, by a search for better places of their vertices, as
+  // long as that helps. False if it was cut short.
+  bool search_worst()
   {
-    const std::size_t count = 20 + std::size_t(m_state.mesh.number_of_faces()) / 500;
+    const Indexed_mesh& mesh = m_state.mesh;
+    const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
-    for(int pass = 0; pass < m_parameters.maximum_revisits; ++pass)
+    for(int pass = 0; pass < maximum_passes && m_parameters.use_on_surface_steps; ++pass)
     {
-      std::vector<std::pair<double, int>> faces = face_densities(m_state, m_density);
-      const std::size_t n = (std::min)(count, faces.size());
-      std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
-                        std::greater<std::pair<double, int>>());
-      m_limits.worst = (std::min)(m_limits.worst, faces.front().first);
-      std::vector<char> is_wanted(faces.size(), 0);
+      const std::vector<std::pair<double, int>> worst = worst_faces(m_state, m_density, m_limits.bad);
+      if(worst.empty())
+        return true;
+      m_limits.worst = (std::min)(m_limits.worst, worst.front().first);
+      std::vector<char> is_bad(mesh.number_of_faces(), 0);
       double after = 0;
-      for(std::size_t i = 0; i < n; ++i)
+      for(const std::pair<double, int>& d : worst)
       {
-        is_wanted[faces[i].second] = 1;
-        after += std::log(faces[i].first);
+        is_bad[d.second] = 1;
+        after += std::log(d.first / m_limits.bad);
       }
-      if(getenv("DBGW")) { fprintf(stderr,"revisit %d:",pass); for(std::size_t i=0;i<(std::min)(n,std::size_t(12));++i) fprintf(stderr," %d:%.1f",faces[i].second,faces[i].first); fprintf(stderr,"\n"); }
-      const double least_gain = 0.01 * double(n);
-      if(!(after < before - least_gain) || !visit(is_wanted, m_small_selection))
-        return;
+      if(!(after < 0.9 * before))
+        return true;
       before = after;
+      m_limits.searched = worst.back().first;
+      const std::vector<char> around = faces_around(mesh, vertices_of(mesh, is_bad), 3);
+      if(!visit_once(around, m_small_partition, Moves::on_surface, m_density) ||
+         !visit_once(around, m_small_partition, Moves::by_search, m_density))
+        return false;
     }
+    return true;
+  }
+
+  void finish_angles()
+  {
+    const Acceptance_test::Limits limits = m_limits;
+    m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
+    std::vector<Placed_vertex> vertices;
+    Drift_guard drift_guard;
+    Finishing_stage(m_state).run(
+      [&](const std::vector<char>& is_wanted, const Finishing_stage::Goal& goal, bool searches) {
+        m_limits.sharpest = goal.sharpest;
+        m_limits.sharp = goal.searched;
+        return visit_once(is_wanted, m_small_partition,
+                          searches ? Moves::by_search : Moves::on_surface,
+                          Angle_barrier_density<Density>(m_density, goal.target));
+      },
+      [&]() {
+        vertices = m_state.vertices;
+        drift_guard = m_drift_guard;
+      },
+      [&]() {
+        m_state.vertices = vertices;
+        m_drift_guard = drift_guard;
+      });
+    m_limits = limits;
   }
 
   // visits the wanted faces, in patches that are flattened or not, until all are touched; false if it
@@ -210,20 +258,24 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!solve_round(patches, true))
+      if(!solve_round(patches, Moves::flattened, m_density))
         return false;
     }
   }
 
-  // visits the wanted faces in patches that are not flattened
-  bool visit_on_surface(const std::vector<char>& is_wanted)
+  // visits the wanted faces in one round of patches that are not flattened
+  template <typename AnyDensity>
+  bool visit_once(const std::vector<char>& is_wanted,
+                  Patch_partition& partition,
+                  Moves moves,
+                  const AnyDensity& density)
   {
     if(!may_go_on())
       return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<int>> patches = m_partition.divide(is_wanted, m_random);
+    const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
-    return solve_round(patches, false);
+    return solve_round(patches, moves, density);
   }
 
   bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
@@ -240,7 +292,10 @@ private:
   }
 
   // false if it was cut short; what was solved by then is committed
-  bool solve_round(const std::vector<std::vector<int>>& patches, bool flattens)
+  template <typename AnyDensity>
+  bool solve_round(const std::vector<std::vector<int>>& patches,
+                   Moves moves,
+                   const AnyDensity& density)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
@@ -252,7 +307,7 @@ private:
       if(!stops && !(is_sequential ? may_go_on() : has_time()))
         stops = true;
       if(!stops)
-        solver.solve(patches[i], m_state, m_density, m_limits, m_drift_guard, flattens, solved[i]);
+        solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
     });
     for(Solved_patch& s : solved)
       if(!s.patch.faces.empty())
@@ -287,7 +342,6 @@ private:
 
   void report(const Solved_patch& s)
   {
-    if(getenv("DBGW")) fprintf(stderr,"  patch seed %d faces %d flat %d acc %d E %.6g -> %.6g def %d %d path %d\n",s.patch.faces.empty()?-1:s.patch.faces[0],(int)s.patch.faces.size(),s.is_flattened,s.decision.accepted,s.decision.before.energy,s.decision.after.energy,s.decision.before.defects(),s.decision.after.defects(),(int)s.path);
     ++m_result.number_of_patches;
     m_result.sum_of_patch_sizes += double(s.patch.faces.size());
     m_result.times.flattening += s.flattening_time;
@@ -310,6 +364,7 @@ private:
     report.defects_before = std::size_t(s.decision.before.defects());
     report.defects_after = std::size_t(s.decision.after.defects());
     report.accepted = s.decision.accepted;
+    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
     m_visitor.on_patch_end(report);
   }
 
@@ -320,8 +375,8 @@ private:
   Result& m_result;
   std::chrono::steady_clock::time_point m_start;
   CGAL::Random m_random;
-  Patch_selection m_selection, m_small_selection;
-  Patch_partition m_partition;
+  Patch_selection m_selection;
+  Patch_partition m_partition, m_small_partition;
   Patch_rounds m_rounds;
   For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
   Face_geometry m_geometry;
@@ -329,7 +384,8 @@ private:
   std::vector<char> m_is_active, m_is_untouched; // per face
   std::vector<char> m_moved;                     // per vertex
   Drift_guard m_drift_guard;
-  Acceptance_test::Limits m_limits{0, 0, 0, 1, 0};
+  Acceptance_test::Limits m_limits;
+  bool m_has_refused = false;
   double m_cap = 0;
   double m_rest_energy = 0;
 };

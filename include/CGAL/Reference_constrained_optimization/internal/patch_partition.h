@@ -27,6 +27,9 @@ class Patch_partition
 public:
   Patch_partition(const Indexed_mesh& mesh, int size) : m_mesh(mesh), m_size(size) {}
 
+  int patch_size() const { return m_size; }
+  void set_patch_size(int size) { m_size = size; }
+
   // patches of about the given number of faces, the largest first
   std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted, CGAL::Random& random)
   {
@@ -35,36 +38,13 @@ public:
       if(is_wanted[f])
         wanted.push_back(f);
     const std::size_t number = (wanted.size() + m_size - 1) / m_size;
-    m_cell.assign(m_mesh.number_of_faces(), -1);
-    m_queue.clear();
-    const auto take = [&](int f, int cell) {
-      m_cell[f] = cell;
-      m_queue.push_back(f);
-    };
-    std::vector<int> draw = wanted;
+    std::vector<int> seeds = wanted;
     for(std::size_t i = 0; i < number; ++i)
-    {
-      std::swap(draw[i], draw[std::size_t(random.get_int(int(i), int(draw.size())))]);
-      take(draw[i], int(i));
-    }
-
-    int cells = int(number);
-    std::size_t next = 0;
-    for(std::size_t i = 0; i < wanted.size(); ++i)
-    {
-      for(; next < m_queue.size(); ++next)
-      {
-        const int f = m_queue[next];
-        for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
-        {
-          const int o = m_mesh.opposite[c];
-          if(o >= 0 && is_wanted[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0)
-            take(m_mesh.corner_face[o], m_cell[f]);
-        }
-      }
-      if(m_cell[wanted[i]] < 0) // no way leads from a seed to here
-        take(wanted[i], cells++);
-    }
+      std::swap(seeds[i], seeds[std::size_t(random.get_int(int(i), int(seeds.size())))]);
+    seeds.resize(number);
+    int cells = grow(wanted, is_wanted, seeds);
+    if(number > 1) // sizes are more even around faces in the middle
+      cells = grow(wanted, is_wanted, centers(wanted, cells));
 
     std::vector<std::vector<int>> patches(cells);
     for(const int f : m_queue)
@@ -76,6 +56,79 @@ public:
   }
 
 private:
+  // gives all wanted faces to cells that grow from the seeds, and from further ones where no way
+  // leads; m_queue holds them in the order in which they were reached. Returns the number of cells.
+  int grow(const std::vector<int>& wanted,
+           const std::vector<char>& is_wanted,
+           const std::vector<int>& seeds)
+  {
+    m_cell.assign(m_mesh.number_of_faces(), -1);
+    m_queue.clear();
+    int cells = 0;
+    const auto take = [&](int f, int cell) {
+      m_cell[f] = cell;
+      m_queue.push_back(f);
+    };
+    for(const int f : seeds)
+      take(f, cells++);
+    std::size_t next = 0;
+    for(const int start : wanted)
+    {
+      for(; next < m_queue.size(); ++next)
+      {
+        const int f = m_queue[next];
+        for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        {
+          const int o = m_mesh.opposite[c];
+          if(o >= 0 && is_wanted[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0)
+            take(m_mesh.corner_face[o], m_cell[f]);
+        }
+      }
+      if(m_cell[start] < 0)
+        take(start, cells++);
+    }
+    return cells;
+  }
+
+  // of each cell a face that is the furthest from where it ends
+  std::vector<int> centers(const std::vector<int>& wanted, int cells)
+  {
+    std::vector<char> is_reached(m_mesh.number_of_faces(), 0);
+    m_queue.clear();
+    const auto ends = [&](int f) {
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        if(m_mesh.opposite[c] < 0 || m_cell[m_mesh.corner_face[m_mesh.opposite[c]]] != m_cell[f])
+          return true;
+      return false;
+    };
+    for(const int f : wanted)
+      if(ends(f))
+      {
+        is_reached[f] = 1;
+        m_queue.push_back(f);
+      }
+    std::vector<int> centers(cells, -1);
+    for(std::size_t next = 0; next < m_queue.size(); ++next)
+    {
+      const int f = m_queue[next];
+      centers[m_cell[f]] = f;
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+      {
+        const int o = m_mesh.opposite[c], g = o < 0 ? -1 : m_mesh.corner_face[o];
+        if(g >= 0 && m_cell[g] == m_cell[f] && !is_reached[g])
+        {
+          is_reached[g] = 1;
+          m_queue.push_back(g);
+        }
+      }
+    }
+    // a closed component that is one cell ends nowhere
+    for(const int f : wanted)
+      if(centers[m_cell[f]] < 0)
+        centers[m_cell[f]] = f;
+    return centers;
+  }
+
   const Indexed_mesh& m_mesh;
   int m_size;
   std::vector<int> m_cell, m_queue;

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/On_surface_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/Search_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 
@@ -16,6 +17,9 @@
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
+
+// how a patch is moved
+enum class Moves { flattened, on_surface, by_search };
 
 // what is known of a patch after it was solved
 struct Solved_patch
@@ -40,6 +44,7 @@ public:
     : m_builder(state.mesh),
       m_flattened_mover(state.reference, parameters.mover),
       m_on_surface_mover(state.reference, parameters.on_surface_newton_steps),
+      m_search_mover(state.reference),
       m_proposals(parameters.proposals_per_patch),
       m_tolerance(parameters.energy_tolerance)
   {}
@@ -51,7 +56,7 @@ public:
              const Density& density,
              const Acceptance_test::Limits& limits,
              const Drift_guard& drift_guard,
-             bool flattens,
+             Moves moves,
              Solved_patch& s)
   {
     const auto start = std::chrono::steady_clock::now();
@@ -61,7 +66,7 @@ public:
       return;
     s.was_tried = true;
     drift_guard.invite(s.patch);
-    s.is_flattened = flattens;
+    s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
       improve(m_flattened_mover, state, density, limits, s);
@@ -69,6 +74,11 @@ public:
       s.overlaps = m_flattened_mover.overlaps();
       s.distortion = m_flattened_mover.flattening().distortion;
       s.flattening_time = m_flattened_mover.flattening_time();
+    }
+    else if(moves == Moves::by_search)
+    {
+      m_search_mover.set_target(limits.searched, limits.sharp);
+      improve(m_search_mover, state, density, limits, s);
     }
     else
       improve(m_on_surface_mover, state, density, limits, s);
@@ -100,7 +110,7 @@ private:
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
-      proposes = decision.accepted && gain >= m_tolerance * decision.before.energy &&
+      proposes = decision.accepted && gain >= 0.25 * m_tolerance * decision.before.energy &&
                  pass + 1 < m_proposals &&
                  mover.propose_again(s.patch, m_acceptance.steps(), density);
     }
@@ -110,6 +120,7 @@ private:
   Patch_builder m_builder;
   Flattened_mover m_flattened_mover;
   On_surface_mover m_on_surface_mover;
+  Search_mover m_search_mover;
   Acceptance_test m_acceptance;
   int m_proposals;
   double m_tolerance;

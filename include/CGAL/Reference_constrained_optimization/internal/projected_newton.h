@@ -54,6 +54,11 @@ public:
     m_right.resize(2 * m_size);
   }
 
+  // Adds to the Hessian of every element this part of its trace, on the diagonal. Energies that do not
+  // change with scale have soft directions, along which a step would be far too long; a resistance to
+  // strain leaves the long ways open that neighbours go together.
+  void set_strain_resistance(double part) { m_strain_resistance = part; }
+
   // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
   // energy by less than `tolerance` times it.
   template <typename Problem, typename Density>
@@ -95,7 +100,6 @@ public:
       if(!found)
         break;
       const double gained = energy - trial;
-      if(getenv("DBG")) fprintf(stderr,"   newton n %d t %.3g energy %.6g -> %.6g pred %.4g\n",m_size,t,energy,trial,decrease);
       u = moved;
       energy = outcome.final_energy = trial;
       ++outcome.steps;
@@ -139,7 +143,7 @@ private:
         continue;
       }
       sum += projected_derivatives(density, J, gradient, hessian, 0);
-      { static const double mu = getenv("MU") ? atof(getenv("MU")) : 0; if(mu>0) hessian.diagonal().array() += mu*hessian.trace(); }
+      hessian.diagonal().array() += m_strain_resistance * hessian.trace();
 
       // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
       // in the entries of J
@@ -231,6 +235,7 @@ private:
   }
 
   int m_size = 0;
+  double m_strain_resistance = 0;
   Newton_system m_system;
   std::vector<int> m_variable;
   Eigen::VectorXd m_right, m_direction, m_undamped;

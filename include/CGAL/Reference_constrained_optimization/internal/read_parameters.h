@@ -64,8 +64,8 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
   if(!(p.energy_tolerance >= 0))
     throw Invalid_input("energy_tolerance must not be negative, but is " +
                         std::to_string(p.energy_tolerance));
-  if(!choose_parameter(get_parameter(np, internal_np::use_finishing_stage), true))
-    p.maximum_revisits = 0;
+  p.use_finishing_stage =
+    choose_parameter(get_parameter(np, internal_np::use_finishing_stage), p.use_finishing_stage);
   p.relax_constraints =
     choose_parameter(get_parameter(np, CGAL::internal_np::relax_constraints), p.relax_constraints);
   p.use_on_surface_steps =
