@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/conformal_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/injectivity.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
@@ -19,7 +20,9 @@
 #include <CGAL/Surface_mesh_parameterization/Mean_value_coordinates_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace CGAL {
@@ -43,6 +46,7 @@ struct Flattening
 struct Flattening_parameters
 {
   bool use_conformal = true;
+  bool use_conformal_of_cgal = false; // CGAL's solver for it, to compare with
   bool use_mean_value = true;  // on a convex border, before equal weights are
   double conformal_limit = 20; // distortion of a conformal map beyond which it is no start
   int maximum_descent_steps = 25;
@@ -71,23 +75,27 @@ public:
     compute_shapes(triangles, points);
     if(!(m_area > 0))
       return flattening;
-    build(triangles, points);
+    m_mesh.clear();
 
     // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
     // accurate: only nearly isometric ones are taken as they are.
     const double nearly_isometric = 4.05;
-    const bool is_conformal = parameters.use_conformal &&
-                              run(SMP::LSCM_parameterizer_3<Surface_mesh>(), flattening) &&
-                              is_usable(triangles, flattening.positions);
+    const bool is_conformal =
+      parameters.use_conformal &&
+      (parameters.use_conformal_of_cgal
+         ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
+         : m_conformal.flatten(triangles, m_shapes, ends(points), flattening.positions)) &&
+      is_usable(triangles, flattening.positions);
     if(is_conformal)
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
       (is_conformal && flattening.distortion < parameters.conformal_limit) ||
       (parameters.use_mean_value && !m_has_empty_edge && // its weights are not defined there
        run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
-           flattening) &&
+           triangles, points, flattening) &&
        is_usable(triangles, flattening.positions)) ||
-      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), flattening) &&
+      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), triangles,
+           points, flattening) &&
        is_usable(triangles, flattening.positions));
     if(!is_usable_start)
       return flattening;
@@ -129,10 +137,31 @@ private:
     }
   }
 
+  // the two ends of the patch along the longest side of its bounding box
+  static std::array<int, 2> ends(const std::vector<Vector_3>& points)
+  {
+    Vector_3 low = points.front(), high = low;
+    for(const Vector_3& p : points)
+    {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    int axis;
+    (high - low).maxCoeff(&axis);
+    std::array<int, 2> result = {{0, 0}};
+    for(std::size_t i = 1; i < points.size(); ++i)
+    {
+      if(points[i](axis) < points[result[0]](axis))
+        result[0] = int(i);
+      if(points[i](axis) > points[result[1]](axis))
+        result[1] = int(i);
+    }
+    return result;
+  }
+
   // CGAL's mesh of the patch, moved to the origin and scaled to unit area
   void build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
-    m_mesh = Surface_mesh();
     m_mesh.reserve(Surface_mesh::size_type(points.size()),
                    Surface_mesh::size_type(3 * points.size()),
                    Surface_mesh::size_type(triangles.number_of_faces()));
@@ -150,10 +179,16 @@ private:
     }
   }
 
+  // CGAL's mesh is built when the first of its parameterizers asks for it
   template <typename Parameterizer>
-  bool run(const Parameterizer& parameterizer, Flattening& flattening)
+  bool run(const Parameterizer& parameterizer,
+           const Indexed_mesh& triangles,
+           const std::vector<Vector_3>& points,
+           Flattening& flattening)
   {
     namespace SMP = CGAL::Surface_mesh_parameterization;
+    if(m_mesh.is_empty())
+      build(triangles, points);
     Surface_mesh::Halfedge_index border = Surface_mesh::null_halfedge();
     for(const Surface_mesh::Halfedge_index h : m_mesh.halfedges())
       if(m_mesh.is_border(h))
@@ -227,6 +262,7 @@ private:
     return Planar_problem::edges(u, {{v[0], v[1], v[2]}});
   }
 
+  Conformal_flattening m_conformal;
   Surface_mesh m_mesh;
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;
