@@ -23,7 +23,8 @@ namespace internal {
 //
 // With the edge opposite to corner i of a triangle as a complex number w_i in the triangle's plane,
 // and u_i the corner's place as another one, the map is conformal where sum w_i u_i = 0. Minimized is
-// the sum of the squares of these, which has the 2x2 block of conj(w_i) w_j for corners i and j.
+// the sum of the squares of these over the triangles' areas: twice the Dirichlet energy less the
+// area. For corners i and j it has the 2x2 block of conj(w_i) w_j, over the area.
 class Conformal_flattening
 {
 public:
@@ -74,12 +75,11 @@ private:
   {
     m_matrix.set_zero();
     m_right.setZero(2 * m_size);
-    static const bool area = getenv("LEVY") != nullptr;
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const Eigen::Matrix2d& s = shapes[t];
       const Vector_2 w[3] = {s.col(1) - s.col(0), -s.col(1), s.col(0)};
-      const double weight = area ? 1 / s.determinant() : 1;
+      const double weight = 1 / s.determinant();
       for(int i = 0; i < 3; ++i)
       {
         const int v = triangles.corner_vertex[3 * t + i], a = m_variable[v];

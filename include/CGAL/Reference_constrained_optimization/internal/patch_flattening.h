@@ -30,7 +30,7 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 enum class Flattening_path {
-  conformal,     // LSCM, found to be injective
+  conformal,     // found to be injective
   convex_border, // onto a disk, then symmetric Dirichlet descent with a free border
   failed
 };
@@ -47,15 +47,22 @@ struct Flattening_parameters
 {
   bool use_conformal = true;
   bool use_conformal_of_cgal = false; // CGAL's solver for it, to compare with
-  bool use_mean_value = true;  // on a convex border, before equal weights are
-  double conformal_limit = 20; // distortion of a conformal map beyond which it is no start
+  bool use_mean_value = true;         // on a convex border, before equal weights are
+  double conformal_limit = 20;        // distortion of a conformal map beyond which it is no start
+  // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
+  // accurate: descent follows, until the distortion is below this.
+  double nearly_isometric = 4.1;
   int maximum_descent_steps = 25;
   double descent_tolerance = 1e-2; // a relative decrease that ends the descent
+  // the same as long as the distortion is above `far`: folds open up slowly at first
+  double far_tolerance = 1e-6;
+  double far = 5;
 };
 
-// Flattens a disk of triangles with CGAL's Surface_mesh_parameterization (paper 3.2). What it
-// returns is locally injective by an exact check. The border may cross itself: positions are found
-// again by walking within a sheet, for which that does not matter.
+// Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
+// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border
+// may cross itself: positions are found again by walking within a sheet, for which that does not
+// matter.
 class Patch_flattener
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
@@ -77,9 +84,6 @@ public:
       return flattening;
     m_mesh.clear();
 
-    // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
-    // accurate: only nearly isometric ones are taken as they are.
-    const double nearly_isometric = 4.05;
     const bool is_conformal =
       parameters.use_conformal &&
       (parameters.use_conformal_of_cgal
@@ -103,7 +107,7 @@ public:
                         ? Flattening_path::conformal
                         : Flattening_path::convex_border;
     if(flattening.path == Flattening_path::convex_border ||
-       flattening.distortion > nearly_isometric)
+       flattening.distortion > parameters.nearly_isometric)
     {
       const std::vector<Vector_2> start = flattening.positions;
       descend(triangles, flattening.positions, parameters);
@@ -238,8 +242,19 @@ private:
     }
     problem.is_free.assign(u.size(), 1);
     m_optimizer.analyze(problem);
-    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u,
-                         parameters.maximum_descent_steps, parameters.descent_tolerance);
+    double reached = distortion(triangles, u);
+    for(int step = 0; step < parameters.maximum_descent_steps; ++step)
+    {
+      const double tolerance =
+        reached > parameters.far ? parameters.far_tolerance : parameters.descent_tolerance;
+      const Projected_newton::Outcome outcome =
+        m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
+      const double gained = outcome.initial_energy - outcome.final_energy;
+      reached = distortion(triangles, u);
+      if(outcome.steps == 0 || gained < tolerance * outcome.final_energy ||
+         reached < parameters.nearly_isometric)
+        return;
+    }
   }
 
   double distortion(const Indexed_mesh& triangles, const std::vector<Vector_2>& u) const
