@@ -54,9 +54,9 @@ struct Flattening_parameters
   double nearly_isometric = 4.1;
   int maximum_descent_steps = 25;
   double descent_tolerance = 1e-2; // a relative decrease that ends the descent
-  // the same as long as the distortion is above `far`: folds open up slowly at first
+  // the same as long as the distortion is above `far_distortion`: folds open up slowly at first
   double far_tolerance = 1e-6;
-  double far = 5;
+  double far_distortion = 5;
 };
 
 // Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
@@ -245,8 +245,8 @@ private:
     double reached = distortion(triangles, u);
     for(int step = 0; step < parameters.maximum_descent_steps; ++step)
     {
-      const double tolerance =
-        reached > parameters.far ? parameters.far_tolerance : parameters.descent_tolerance;
+      const double tolerance = reached > parameters.far_distortion ? parameters.far_tolerance
+                                                                   : parameters.descent_tolerance;
       const Projected_newton::Outcome outcome =
         m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
       const double gained = outcome.initial_energy - outcome.final_energy;
