@@ -130,14 +130,17 @@ std::vector<Vector_3> points_of(const Patch& patch)
   return points;
 }
 
+enum class Way { conformal, conformal_of_cgal, mean_value, tutte };
+
 // what a map to a convex border distorts is mended by descent
-void flattening(benchmark::State& state, bool use_conformal, bool use_mean_value)
+void flattening(benchmark::State& state, Way way)
 {
   const Patch patch = scene().patch(int(state.range(0)));
   const std::vector<Vector_3> points = points_of(patch);
   Flattening_parameters parameters;
-  parameters.use_conformal = use_conformal;
-  parameters.use_mean_value = use_mean_value;
+  parameters.use_conformal = way == Way::conformal || way == Way::conformal_of_cgal;
+  parameters.use_conformal_of_cgal = way == Way::conformal_of_cgal;
+  parameters.use_mean_value = way != Way::tutte;
   Patch_flattener flattener;
   for(auto _ : state)
     state.counters["distortion"] =
@@ -344,9 +347,10 @@ void patch_sizes(benchmark::internal::Benchmark* benchmark)
 BENCHMARK(cone_proxy)->Arg(1000);
 BENCHMARK_CAPTURE(growing, by_distance, false)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(growing, by_cost, true)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, conformal, true, true)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, mean_value, false, true)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, tutte, false, false)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, conformal, Way::conformal)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, conformal_of_cgal, Way::conformal_of_cgal)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, mean_value, Way::mean_value)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, tutte, Way::tutte)->Apply(patch_sizes);
 BENCHMARK(flattening_as_rigid_as_possible)->Apply(patch_sizes);
 BENCHMARK(newton_step_in_plane)->Apply(patch_sizes);
 BENCHMARK(newton_step_on_surface)->Apply(patch_sizes);

@@ -43,6 +43,7 @@ inline void set_method(const std::string& method,
   // of the surface what is left of the distortion spoils the result.
   p.mover.flattening.use_conformal = false;
   p.mover.flattening.use_mean_value = false;
+  p.mover.flattening.nearly_isometric = 4;
   p.mover.flattening.maximum_descent_steps = 500;
   p.mover.flattening.descent_tolerance = 1e-6;
   // the minimum in the plane, and what comes back from it is kept

@@ -124,6 +124,13 @@ void test_closest(const Shape& shape, const std::string& name)
   {
     const Vector_3 p = random.in_cube(1.5);
     const internal::Surface_point s = surface.closest(p);
+    // what is known already is kept if nothing is closer
+    const internal::Surface_point corner =
+      surface.point(random.index(surface.mesh().number_of_faces()), Vector_3::UnitX());
+    RCO_CHECK_NEAR((surface.closest(p, corner).position - p).norm(), (s.position - p).norm(),
+                   1e-12);
+    RCO_CHECK_LESS_EQUAL((surface.closest(p, s).position - p).norm(),
+                         (s.position - p).norm() + 1e-12);
     check_surface_point(surface, s);
     RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-12);
   }

@@ -118,6 +118,19 @@ public:
     return closest_in_face(p, s.face[hit.second - s.triangles.begin()]);
   }
 
+  // the same if it is closer than `known`, else that
+  Surface_point closest(const Vector_3& p, const Surface_point& known) const
+  {
+    const Vector_3& k = known.position;
+    const Tree::Point_and_primitive_id hint(Kernel::Point_3(k.x(), k.y(), k.z()),
+                                            m_triangles.end());
+    const auto hit =
+      m_tree->closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()), hint);
+    if(hit.second == m_triangles.end())
+      return known;
+    return closest_in_face(p, m_triangle_face[hit.second - m_triangles.begin()]);
+  }
+
   // local closest point, from `face` on
   Surface_point descend(const Vector_3& p, int face) const
   {

@@ -10,22 +10,24 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2.h>
 
-#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Whether the piecewise linear map of a triangulated disk to the plane is locally injective: every
-// triangle is positively oriented (exactly), and the angles at every inner vertex make one turn.
+// Whether the piecewise linear map of a triangulated disk to the plane is locally injective, exactly:
+// every triangle is positively oriented, and those at an inner vertex go round it once.
 inline bool is_locally_injective(const Indexed_mesh& triangles, const std::vector<Vector_2>& u)
 {
   typedef CGAL::Exact_predicates_inexact_constructions_kernel Kernel;
   for(const Vector_2& p : u)
     if(!p.allFinite())
       return false;
-  std::vector<double> turn(u.size(), 0);
+  // how often the triangles at a vertex sweep over the direction of the x-axis: from below the axis
+  // to above it by less than half a turn
+  std::vector<int> sweeps(u.size(), 0);
   for(int t = 0; t < triangles.number_of_faces(); ++t)
   {
     const int* v = &triangles.corner_vertex[3 * t];
@@ -34,14 +36,12 @@ inline bool is_locally_injective(const Indexed_mesh& triangles, const std::vecto
       return false;
     for(int i = 0; i < 3; ++i)
     {
-      const Vector_2 a = u[v[(i + 1) % 3]] - u[v[i]], b = u[v[(i + 2) % 3]] - u[v[i]];
-      turn[v[i]] += std::atan2(a(0) * b(1) - a(1) * b(0), a.dot(b));
+      const Vector_2 &o = u[v[i]], &a = u[v[(i + 1) % 3]], &b = u[v[(i + 2) % 3]];
+      sweeps[v[i]] += (a(1) < o(1) && b(1) > o(1)) || (a(1) == o(1) && a(0) > o(0));
     }
   }
-  // positive triangles turn an inner vertex by a multiple of 2 pi
-  const double three_half_turns = 9.42;
   for(std::size_t i = 0; i < u.size(); ++i)
-    if(!triangles.is_border_vertex[i] && turn[i] > three_half_turns)
+    if(!triangles.is_border_vertex[i] && sweeps[i] > 1)
       return false;
   return true;
 }

@@ -61,7 +61,9 @@ inline bool map_to_reference(const Patch& patch,
   }
   if(!is_close(nearest))
   {
-    const Surface_point global = reference.closest(point);
+    const Surface_point global = std::isfinite(best_distance)
+                                   ? reference.closest(point, result.on_reference)
+                                   : reference.closest(point);
     const double reach = 3 * (nearest.position - point).norm() + (global.position - point).norm();
     if((global.position - point).norm() < 0.9 * best_distance &&
        reference.is_reachable(nearest, global, reach))

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/conformal_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/injectivity.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
@@ -19,7 +20,9 @@
 #include <CGAL/Surface_mesh_parameterization/Mean_value_coordinates_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace CGAL {
@@ -27,7 +30,7 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 enum class Flattening_path {
-  conformal,     // LSCM, found to be injective
+  conformal,     // found to be injective
   convex_border, // onto a disk, then symmetric Dirichlet descent with a free border
   failed
 };
@@ -43,15 +46,23 @@ struct Flattening
 struct Flattening_parameters
 {
   bool use_conformal = true;
-  bool use_mean_value = true;  // on a convex border, before equal weights are
-  double conformal_limit = 20; // distortion of a conformal map beyond which it is no start
+  bool use_conformal_of_cgal = false; // CGAL's solver for it, to compare with
+  bool use_mean_value = true;         // on a convex border, before equal weights are
+  double conformal_limit = 20;        // distortion of a conformal map beyond which it is no start
+  // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
+  // accurate: descent follows, until the distortion is below this.
+  double nearly_isometric = 4.1;
   int maximum_descent_steps = 25;
   double descent_tolerance = 1e-2; // a relative decrease that ends the descent
+  // the same as long as the distortion is above `far_distortion`: folds open up slowly at first
+  double far_tolerance = 1e-6;
+  double far_distortion = 5;
 };
 
-// Flattens a disk of triangles with CGAL's Surface_mesh_parameterization (paper 3.2). What it
-// returns is locally injective by an exact check. The border may cross itself: positions are found
-// again by walking within a sheet, for which that does not matter.
+// Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
+// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border
+// may cross itself: positions are found again by walking within a sheet, for which that does not
+// matter.
 class Patch_flattener
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
@@ -71,23 +82,24 @@ public:
     compute_shapes(triangles, points);
     if(!(m_area > 0))
       return flattening;
-    build(triangles, points);
+    m_mesh.clear();
 
-    // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
-    // accurate: only nearly isometric ones are taken as they are.
-    const double nearly_isometric = 4.05;
-    const bool is_conformal = parameters.use_conformal &&
-                              run(SMP::LSCM_parameterizer_3<Surface_mesh>(), flattening) &&
-                              is_usable(triangles, flattening.positions);
+    const bool is_conformal =
+      parameters.use_conformal &&
+      (parameters.use_conformal_of_cgal
+         ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
+         : m_conformal.flatten(triangles, m_shapes, ends(points), flattening.positions)) &&
+      is_usable(triangles, flattening.positions);
     if(is_conformal)
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
       (is_conformal && flattening.distortion < parameters.conformal_limit) ||
       (parameters.use_mean_value && !m_has_empty_edge && // its weights are not defined there
        run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
-           flattening) &&
+           triangles, points, flattening) &&
        is_usable(triangles, flattening.positions)) ||
-      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), flattening) &&
+      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), triangles,
+           points, flattening) &&
        is_usable(triangles, flattening.positions));
     if(!is_usable_start)
       return flattening;
@@ -95,7 +107,7 @@ public:
                         ? Flattening_path::conformal
                         : Flattening_path::convex_border;
     if(flattening.path == Flattening_path::convex_border ||
-       flattening.distortion > nearly_isometric)
+       flattening.distortion > parameters.nearly_isometric)
     {
       const std::vector<Vector_2> start = flattening.positions;
       descend(triangles, flattening.positions, parameters);
@@ -129,10 +141,31 @@ private:
     }
   }
 
+  // the two ends of the patch along the longest side of its bounding box
+  static std::array<int, 2> ends(const std::vector<Vector_3>& points)
+  {
+    Vector_3 low = points.front(), high = low;
+    for(const Vector_3& p : points)
+    {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    int axis;
+    (high - low).maxCoeff(&axis);
+    std::array<int, 2> result = {{0, 0}};
+    for(std::size_t i = 1; i < points.size(); ++i)
+    {
+      if(points[i](axis) < points[result[0]](axis))
+        result[0] = int(i);
+      if(points[i](axis) > points[result[1]](axis))
+        result[1] = int(i);
+    }
+    return result;
+  }
+
   // CGAL's mesh of the patch, moved to the origin and scaled to unit area
   void build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
-    m_mesh = Surface_mesh();
     m_mesh.reserve(Surface_mesh::size_type(points.size()),
                    Surface_mesh::size_type(3 * points.size()),
                    Surface_mesh::size_type(triangles.number_of_faces()));
@@ -150,10 +183,16 @@ private:
     }
   }
 
+  // CGAL's mesh is built when the first of its parameterizers asks for it
   template <typename Parameterizer>
-  bool run(const Parameterizer& parameterizer, Flattening& flattening)
+  bool run(const Parameterizer& parameterizer,
+           const Indexed_mesh& triangles,
+           const std::vector<Vector_3>& points,
+           Flattening& flattening)
   {
     namespace SMP = CGAL::Surface_mesh_parameterization;
+    if(m_mesh.is_empty())
+      build(triangles, points);
     Surface_mesh::Halfedge_index border = Surface_mesh::null_halfedge();
     for(const Surface_mesh::Halfedge_index h : m_mesh.halfedges())
       if(m_mesh.is_border(h))
@@ -203,8 +242,19 @@ private:
     }
     problem.is_free.assign(u.size(), 1);
     m_optimizer.analyze(problem);
-    m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u,
-                         parameters.maximum_descent_steps, parameters.descent_tolerance);
+    double reached = distortion(triangles, u);
+    for(int step = 0; step < parameters.maximum_descent_steps; ++step)
+    {
+      const double tolerance = reached > parameters.far_distortion ? parameters.far_tolerance
+                                                                   : parameters.descent_tolerance;
+      const Projected_newton::Outcome outcome =
+        m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
+      const double gained = outcome.initial_energy - outcome.final_energy;
+      reached = distortion(triangles, u);
+      if(outcome.steps == 0 || gained < tolerance * outcome.final_energy ||
+         reached < parameters.nearly_isometric)
+        return;
+    }
   }
 
   double distortion(const Indexed_mesh& triangles, const std::vector<Vector_2>& u) const
@@ -227,6 +277,7 @@ private:
     return Planar_problem::edges(u, {{v[0], v[1], v[2]}});
   }
 
+  Conformal_flattening m_conformal;
   Surface_mesh m_mesh;
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;

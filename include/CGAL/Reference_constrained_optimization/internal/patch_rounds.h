@@ -62,6 +62,7 @@ public:
   }
 
 private:
+  // the faces of the patch are taken already
   void mark_near(const std::vector<int>& patch)
   {
     std::vector<int> front;
@@ -72,9 +73,17 @@ private:
         list.push_back(v);
       }
     };
+    // the rings start from the boundary
     for(const int f : patch)
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
-        mark(m_mesh.corner_vertex[c], front);
+        if(m_mesh.opposite[c] >= 0 && !m_is_taken[m_mesh.corner_face[m_mesh.opposite[c]]])
+        {
+          mark(m_mesh.source(c), front);
+          mark(m_mesh.target(c), front);
+        }
+    for(const int f : patch)
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        m_is_near[m_mesh.corner_vertex[c]] = 1;
     for(int ring = 0; ring < m_halo && !front.empty(); ++ring)
     {
       std::vector<int> next;
