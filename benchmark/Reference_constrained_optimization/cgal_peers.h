@@ -17,13 +17,18 @@
 #include <CGAL/boost/graph/iterator.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
+#include <utility>
 
-inline double minimum_angle(const Mesh& mesh)
+// what the number of iterations is chosen by: the minimum angle, and the mean where a face that
+// cannot move owns the minimum
+inline std::pair<double, double> angle_quality(const Mesh& mesh)
 {
-  return CGAL::Reference_constrained_optimization::angle_statistics(mesh).minimum;
+  const auto angles = CGAL::Reference_constrained_optimization::angle_statistics(mesh);
+  const double rounding = 1e-6;
+  return {std::round(angles.minimum / rounding), angles.mean};
 }
 
 constexpr unsigned int tried_numbers_of_iterations[] = {1, 5, 10, 20, 50};
@@ -40,7 +45,8 @@ inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints
 {
   const Stopwatch all;
   Peer_result best;
-  double best_angle = -1, seconds_per_iteration = 0;
+  std::pair<double, double> best_quality(-1, 0);
+  double seconds_per_iteration = 0;
   for(const unsigned int n : tried_numbers_of_iterations)
   {
     if(all.seconds() + n * seconds_per_iteration > time_limit)
@@ -69,10 +75,10 @@ inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints
       result.note += text;
     }
     seconds_per_iteration = (std::max)(seconds_per_iteration, result.seconds / n);
-    const double angle = minimum_angle(result.mesh);
-    if(angle > best_angle)
+    const std::pair<double, double> quality = angle_quality(result.mesh);
+    if(quality > best_quality)
     {
-      best_angle = angle;
+      best_quality = quality;
       best = result;
     }
   }
@@ -118,7 +124,8 @@ private:
 inline Peer_result relax(const Mesh& input, bool with_guard, double time_limit)
 {
   Peer_result best;
-  double best_angle = -1, seconds = 0;
+  std::pair<double, double> best_quality(-1, 0);
+  double seconds = 0;
   Mesh mesh = input;
   const Stopwatch setup;
   Mesh_on_reference on_reference(input);
@@ -138,10 +145,10 @@ inline Peer_result relax(const Mesh& input, bool with_guard, double time_limit)
       on_reference.give(mesh);
     }
     seconds += watch.seconds();
-    const double angle = minimum_angle(mesh);
-    if(angle > best_angle)
+    const std::pair<double, double> quality = angle_quality(mesh);
+    if(quality > best_quality)
     {
-      best_angle = angle;
+      best_quality = quality;
       best = {mesh, seconds, iterations_text(done)};
     }
   }

@@ -126,7 +126,15 @@ private:
     return shown;
   }
 
-  int columns() const { return (std::min)(4, (std::max)(1, int(m_panels.size()))); }
+  // as few gaps as may be
+  int columns() const
+  {
+    const int n = int(m_panels.size());
+    if(n <= 5)
+      return (std::max)(1, n);
+    const auto gaps = [n](int columns) { return (columns - n % columns) % columns; };
+    return gaps(4) <= gaps(5) ? 4 : 5;
+  }
 
   static Axis linear_axis(double low, double high, double begin, double end)
   {
