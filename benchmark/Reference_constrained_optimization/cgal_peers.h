@@ -70,7 +70,7 @@ inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints
       on_reference.give(result.mesh);
       result.seconds += projection.seconds();
       char text[64];
-      std::snprintf(text, sizeof text, ", ended %.2g mean edges off R",
+      std::snprintf(text, sizeof text, ", left R by %.2g edges",
                     off.maximum / on_reference.mean_edge_length());
       result.note += text;
     }

@@ -62,7 +62,8 @@ angle is. drift: largest distance of samples from the mesh to the reference and 
 root mean square, in mean edges of the reference. flips, folds: faces turned against the reference,
 and edges folded by more than 120 degrees. crossings: pairs of faces that intersect. off R: largest
 distance of a vertex from the reference over the diagonal. bound: estimate of the largest minimum angle
-that the connectivity allows. s: processor time. T_F: time of one factorization of the whole mesh'
+that the connectivity allows. run: how it ended; CGAL's safe angle smoothing may stop off the
+reference, and is projected then. s: processor time. T_F: time of one factorization of the whole mesh'
 system, a yardstick for the time; left out above 200000 vertices. better: who is better, that is, not
 worse in theta (min and mean), drift, flips and folds, better in one of them, at no more time; methods
 that change the connectivity are exempt. wins: the columns in which the method is ahead of the package.
