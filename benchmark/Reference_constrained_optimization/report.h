@@ -34,6 +34,13 @@ public:
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     m_fields.push_back({key, heading, std::isfinite(x) ? text : "-", true, x});
   }
+  // a number of any order of magnitude
+  void add_small(const std::string& key, const std::string& heading, double x)
+  {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.0e", x);
+    m_fields.push_back({key, heading, std::isfinite(x) ? text : "-", true, x});
+  }
 
   void print_table(std::ostream& out, bool with_heading) const
   {
@@ -83,27 +90,30 @@ private:
       std::vector<std::string> headings;
     };
     static const std::vector<Width> widths = {
-      {5, {"N_out", "SD", "MB"}},
+      {5, {"N_out", "SD", "MB", "off R", "bound"}},
       {6, {"method", "V", "F", "median", "p99", "off", "N_in", "faces", "us/V"}},
-      {7, {"max", "flips", "folds", "s", "T_F ms", "threads"}},
+      {7, {"better", "max", "flips", "folds", "s", "T_F ms", "threads"}},
       {8, {"time/T_F", "speed-up"}},
       {9, {"nonconvex", "drift in", "drift out"}},
       {10, {"settings", "accepted %"}},
       {11, {"start", "mean", "drift"}},
       {12, {"planarity in", "planarity out"}},
       {14, {"stages %"}},
-      {15, {"theta in", "theta out", "edges in", "edges out", "status"}},
+      {15, {"theta", "theta in", "theta out", "edges in", "edges out", "status", "drift, rms"}},
       {17, {"energy"}},
-      {18, {"pair", "flattening %"}},
+      {18, {"pair", "flattening %", "below 10..40"}},
       {20, {"mesh"}},
-      {22, {"angles in", "angles out"}}};
+      {22, {"angles in", "angles out"}},
+      {27, {"optimized by"}},
+      {34, {"run"}}};
     std::size_t width = heading.size();
     for(const Width& w : widths)
       if(std::find(w.headings.begin(), w.headings.end(), heading) != w.headings.end())
         width = (std::max)(width, w.width);
     // numbers to the right; a value that is too long pushes the rest of its row
     const bool is_left = values.empty() || heading == "status" || heading == "settings" ||
-                         heading == "start" || heading == "method";
+                         heading == "start" || heading == "method" || heading == "optimized by" ||
+                         heading == "run" || heading == "better" || heading == "wins";
     const auto padded = [&](const std::string& s) {
       const std::string fill(s.size() < width ? width - s.size() : 0, ' ');
       return is_left ? s + fill : fill + s;

@@ -112,23 +112,20 @@ public:
   // closest point of all of R, by the tree
   Surface_point closest(const Vector_3& p) const
   {
-    std::call_once(m_search->is_built, [this]() { build_tree(); });
-    const Search& s = *m_search;
-    const auto hit = s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()));
-    return closest_in_face(p, s.face[hit.second - s.triangles.begin()]);
+    const Search& s = search();
+    return closest_of(
+      p, s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z())));
   }
 
-  // the same if it is closer than `known`, else that
+  // the same where a point of R is known already: the tree looks only at what is closer
   Surface_point closest(const Vector_3& p, const Surface_point& known) const
   {
-    const Vector_3& k = known.position;
-    const Tree::Point_and_primitive_id hint(Kernel::Point_3(k.x(), k.y(), k.z()),
-                                            m_triangles.end());
-    const auto hit =
-      m_tree->closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()), hint);
-    if(hit.second == m_triangles.end())
-      return known;
-    return closest_in_face(p, m_triangle_face[hit.second - m_triangles.begin()]);
+    const Search& s = search();
+    const Vector_3& q = known.position;
+    const auto hit = s.tree.closest_point_and_primitive(
+      Kernel::Point_3(p.x(), p.y(), p.z()),
+      {Kernel::Point_3(q.x(), q.y(), q.z()), Triangle_iterator(s.triangles.end())});
+    return hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit);
   }
 
   // local closest point, from `face` on
@@ -184,6 +181,19 @@ private:
     std::vector<int> face; // per triangle
     Tree tree;
   };
+
+  const Search& search() const
+  {
+    std::call_once(m_search->is_built, [this]() { build_tree(); });
+    return *m_search;
+  }
+
+  template <typename Hit>
+  Surface_point closest_of(const Vector_3& p, const Hit& hit) const
+  {
+    const Search& s = *m_search;
+    return closest_in_face(p, s.face[hit.second - Triangle_iterator(s.triangles.begin())]);
+  }
 
   void build_tree() const
   {

@@ -1,0 +1,111 @@
+#ifndef RCO_BENCHMARK_PEERS_H
+#define RCO_BENCHMARK_PEERS_H
+
+// The optimizers that are compared, each moving a mesh along its own initial shape with its border
+// fixed.
+
+#include "Mesh_on_reference.h"
+#include "Peer_result.h"
+#include "Soft_constraint_optimizer.h"
+#include "Star_smoother.h"
+#include "cgal_peers.h"
+#include "report.h"
+
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+struct Peer
+{
+  std::string key, name;
+  bool keeps_connectivity;
+  std::function<Peer_result(const Mesh& input, double time_limit)> run;
+};
+
+namespace peers {
+
+template <typename Named_parameters>
+Peer_result optimize(const Mesh& input, const Named_parameters& np)
+{
+  Peer_result result;
+  result.mesh = input;
+  const Stopwatch watch;
+  const auto r = CGAL::reference_constrained_optimize(
+    result.mesh, result.mesh, CGAL::Reference_constrained_optimization::Minimum_angle_energy(), np);
+  result.seconds = watch.seconds();
+  result.note = std::string(::name(r.status)) + ", " + iterations_text(r.number_of_iterations);
+  return result;
+}
+
+inline Peer_result smooth_stars(const Mesh& input, double exponent_factor)
+{
+  const int number_of_sweeps = 50;
+  Peer_result result;
+  result.mesh = input;
+  const Stopwatch watch;
+  Mesh_on_reference mesh(input);
+  Star_smoother(mesh, exponent_factor).run(number_of_sweeps);
+  mesh.give(result.mesh);
+  result.seconds = watch.seconds();
+  result.note = std::to_string(number_of_sweeps) + " sweeps";
+  return result;
+}
+
+inline Peer_result constrain_softly(const Mesh& input)
+{
+  Peer_result result;
+  result.mesh = input;
+  const Stopwatch watch;
+  Mesh_on_reference mesh(input);
+  const int iterations = Soft_constraint_optimizer(mesh).run({});
+  mesh.give(result.mesh);
+  result.seconds = watch.seconds();
+  result.note = iterations_text(iterations);
+  return result;
+}
+
+} // namespace peers
+
+// The first is the mesh as it is and the second what all others are compared with.
+inline std::vector<Peer> all_peers()
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  return {
+    {"input", "input", true,
+     [](const Mesh& m, double) {
+       return Peer_result{m, 0, ""};
+     }},
+    {"package", "package", true,
+     [](const Mesh& m, double limit) {
+       return peers::optimize(m, CGAL::parameters::maximum_running_time(limit));
+     }},
+    {"plain", "paper's pipeline", true,
+     [infinity](const Mesh& m, double limit) {
+       return peers::optimize(m, CGAL::parameters::use_on_surface_steps(false)
+                                   .use_finishing_stage(false)
+                                   .drift_bound(infinity)
+                                   .maximum_running_time(limit));
+     }},
+    {"stars1", "star smoother, s = 1", true,
+     [](const Mesh& m, double) { return peers::smooth_stars(m, 1); }},
+    {"stars10", "star smoother, s = 10", true,
+     [](const Mesh& m, double) { return peers::smooth_stars(m, 10); }},
+    {"soft", "soft constraint", true,
+     [](const Mesh& m, double) { return peers::constrain_softly(m); }},
+    {"angles", "CGAL angle smoothing", true,
+     [](const Mesh& m, double limit) { return smooth_angles(m, false, limit); }},
+    {"angles_safe", "CGAL angle smoothing, safe", true,
+     [](const Mesh& m, double limit) { return smooth_angles(m, true, limit); }},
+    {"relax", "CGAL relaxation", true,
+     [](const Mesh& m, double limit) { return relax(m, false, limit); }},
+    {"relax_guarded", "CGAL relaxation, guarded", true,
+     [](const Mesh& m, double limit) { return relax(m, true, limit); }},
+    {"remesh", "CGAL isotropic remeshing", false, [](const Mesh& m, double) { return remesh(m); }}};
+}
+
+#endif // RCO_BENCHMARK_PEERS_H
