@@ -116,7 +116,7 @@ namespace CGAL {
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`4e-3`}
+ *     \cgalParamDefault{`2e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch, flattened or not}

@@ -22,7 +22,7 @@ struct Loop_parameters
   std::size_t number_of_iterations = 30;
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
-  double energy_tolerance = 4e-3;
+  double energy_tolerance = 2e-3;
   double movement_tolerance = 0.01; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
@@ -70,9 +70,8 @@ inline int on_surface_patch_size(const Selection_parameters& selection, const In
   if(selection.maximum_patch_size > 0)
     return selection.maximum_patch_size;
   const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
-  const double smallest = getenv("SM")?atof(getenv("SM")):4000, largest = 20000, number = 6;
-  return triangles_to_faces(
-    mesh, (std::min)(largest, (std::max)(smallest, triangles / number)));
+  const double smallest = 4000, largest = 20000, number = 4;
+  return triangles_to_faces(mesh, (std::min)(largest, (std::max)(smallest, triangles / number)));
 }
 
 // of the patches around bad elements

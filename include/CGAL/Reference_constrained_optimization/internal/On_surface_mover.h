@@ -196,7 +196,8 @@ private:
       const std::array<int, 3>& t = element.vertices;
       if(!is_on_edge(t[0]) && !is_on_edge(t[1]) && !is_on_edge(t[2]))
         continue;
-      projected_derivatives(density, m_problem.shapes[e] * element.rest_inverse, gradient, unused, 0);
+      projected_derivatives(density, m_problem.shapes[e] * element.rest_inverse, gradient, unused,
+                            0);
       const Eigen::Matrix2d by_jacobian = Eigen::Map<const Eigen::Matrix2d>(gradient.data());
       const Eigen::Matrix<double, 3, 2> by_edges =
         m_planes[e] * (by_jacobian * element.rest_inverse.transpose());
@@ -216,7 +217,7 @@ private:
   std::vector<Tangent_frame> m_frames; // per vertex
   std::vector<Tangent_frame> m_planes; // per element
   std::vector<Vector_3> m_descent;     // per vertex
-  std::vector<Vector_2> m_motion;               // per vertex, in its frame
+  std::vector<Vector_2> m_motion;      // per vertex, in its frame
   double m_optimization_time = 0;
 };
 

@@ -113,8 +113,7 @@ public:
   Surface_point closest(const Vector_3& p) const
   {
     const Search& s = search();
-    return closest_of(
-      p, s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z())));
+    return closest_of(p, s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z())));
   }
 
   // the same where a point of R is known already: the tree looks only at what is closer

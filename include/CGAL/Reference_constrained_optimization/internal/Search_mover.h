@@ -143,8 +143,8 @@ private:
         goes_on = true;
         double edge = 0;
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-          edge += (m_placed[mesh.target(mesh.vertex_corners[k])].position - m_placed[v].position)
-                    .norm();
+          edge +=
+            (m_placed[mesh.target(mesh.vertex_corners[k])].position - m_placed[v].position).norm();
         edge /= mesh.vertex_begin[v + 1] - mesh.vertex_begin[v];
         if(improve(patch, density, v, m_reach[i] * edge))
         {
@@ -185,8 +185,9 @@ private:
     Placed_vertex best_place = here;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
-    const double directions[8][2] = {{1, 0},  {diagonal, diagonal},   {0, 1},  {-diagonal, diagonal},
-                                     {-1, 0}, {-diagonal, -diagonal}, {0, -1}, {diagonal, -diagonal}};
+    const double directions[8][2] = {
+      {1, 0},  {diagonal, diagonal},   {0, 1},  {-diagonal, diagonal},
+      {-1, 0}, {-diagonal, -diagonal}, {0, -1}, {diagonal, -diagonal}};
     for(const double(&d)[2] : directions)
     {
       Placed_vertex& there = m_placed[v];

@@ -37,8 +37,9 @@ public:
   {
     double worst = 0;    // no step may take an element beyond it, or further beyond
     double sharpest = 1; // no step may take the cosine of an angle beyond it, or further beyond
-    double drift = 0; // no step may take a vertex of R further than this from the mesh, or further yet
-    double bad = 0;   // elements beyond it are allowed more drift
+    double drift =
+      0; // no step may take a vertex of R further than this from the mesh, or further yet
+    double bad = 0; // elements beyond it are allowed more drift
     // elements with a density or a cosine of an angle beyond these are what a search is for
     double searched = 0, sharp = 1;
     bool accepts_all = false; // what the mover proposes is kept without a test
@@ -277,8 +278,7 @@ private:
     {
       // held at the bound, bad elements would stay bad: a fifth of it is reserved for them
       const Patch::Guest& guest = m_guests[i];
-      const double bound =
-        (has_marked(mesh, guest.polygon, m_is_bad) ? 1. : 0.8) * m_limits.drift;
+      const double bound = (has_marked(mesh, guest.polygon, m_is_bad) ? 1. : 0.8) * m_limits.drift;
       if(guest.distance > bound && guest.distance > patch.guests[i].distance)
       {
         exceeds = true;

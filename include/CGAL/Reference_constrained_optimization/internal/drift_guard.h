@@ -32,9 +32,8 @@ public:
     Mesh_copy copy;
     for(const Placed_vertex& v : state.vertices)
       copy.points.push_back(v.position);
-    const Point_index index(copy.points, [&](int v) {
-      return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1];
-    });
+    const Point_index index(copy.points,
+                            [&](int v) { return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1]; });
     std::unique_ptr<Reference_surface> surface; // of the mesh, where vertices are not enough
     for(int r = 0; r < reference.number_of_vertices(); ++r)
     {

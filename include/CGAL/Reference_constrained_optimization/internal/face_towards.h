@@ -32,8 +32,9 @@ inline double progress_in_wedge(const Vector_3& a, const Vector_3& b, const Vect
 
 // The face of R that a point moves into when it moves as far as it can along `direction`; its own
 // where it is inside one, and where no face leads that way.
-inline int
-face_towards(const Reference_surface& reference, const Surface_point& point, const Vector_3& direction)
+inline int face_towards(const Reference_surface& reference,
+                        const Surface_point& point,
+                        const Vector_3& direction)
 {
   const Indexed_mesh& mesh = reference.mesh();
   int zeros = 0, zero = -1, corner = -1;

@@ -154,10 +154,10 @@ private:
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection);
     const Indexed_mesh& mesh = m_state.mesh;
-    const int smallest_region = getenv("REG")?atoi(getenv("REG")):12;
+    const int smallest_region = 20;
     std::vector<char> is_wanted = defective_faces(m_state);
     const std::vector<char> is_bad =
-      bad_regions(m_state, m_density, (getenv("BAD")?atof(getenv("BAD")):2) * m_limits.bad, smallest_region);
+      bad_regions(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
     is_wanted = faces_around(mesh, vertices_of(mesh, is_wanted), 2);
@@ -186,7 +186,8 @@ private:
     double before = std::numeric_limits<double>::infinity();
     for(int pass = 0; pass < maximum_passes && m_parameters.use_on_surface_steps; ++pass)
     {
-      const std::vector<std::pair<double, int>> worst = worst_faces(m_state, m_density, m_limits.bad);
+      const std::vector<std::pair<double, int>> worst =
+        worst_faces(m_state, m_density, m_limits.bad);
       if(worst.empty())
         return true;
       m_limits.worst = (std::min)(m_limits.worst, worst.front().first);
@@ -293,9 +294,8 @@ private:
 
   // false if it was cut short; what was solved by then is committed
   template <typename AnyDensity>
-  bool solve_round(const std::vector<std::vector<int>>& patches,
-                   Moves moves,
-                   const AnyDensity& density)
+  bool
+  solve_round(const std::vector<std::vector<int>>& patches, Moves moves, const AnyDensity& density)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
