@@ -33,7 +33,7 @@ public:
   {
     m_state.is_free.assign(copy.points.size(), 0); // nothing is moved onto the reference
     Result unused;
-    place_on_reference(copy.points, m_surface, m_state, unused);
+    place_on_reference<CGAL::Sequential_tag>(copy.points, m_surface, m_state, unused);
   }
 
   const Placed_vertex& operator()(int v) const { return m_state.vertices[v]; }

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Element_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/Slide_lines.h>
+#include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
 
 #include <algorithm>
@@ -148,7 +149,7 @@ double smallest_angle_cosine(const Element_set::Element& element, const VertexAc
   return largest;
 }
 
-// Figures of the whole mesh. Sums run in the order of the faces.
+// Figures of the whole mesh. Sums run in the order of the faces, block by block.
 struct Global_measure
 {
   double energy = 0;        // sum of densities
@@ -159,34 +160,51 @@ struct Global_measure
   std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
 
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 Global_measure measure(const Optimization_state& state, const Density& density, double cap)
 {
   const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-  Global_measure m;
-  std::vector<Vector_3> normals(mesh.number_of_faces());
-  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  const int n = mesh.number_of_faces();
+  std::vector<Vector_3> normals(n);
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+      normals[f] = face_normal(mesh, vertex, f);
+  });
+  std::vector<Global_measure> parts(number_of_blocks(n));
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
+    Global_measure& m = parts[block];
+    for(int f = begin; f < end; ++f)
+    {
+      m.flips += is_flipped(mesh, vertex, f, normals[f]);
+      m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        if(mesh.opposite[c] > c)
+          m.fold_edges += is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
+      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+      {
+        const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
+        const double d = density.value(J);
+        m.energy += d;
+        m.capped_energy += (std::min)(d, cap);
+        if(J.determinant() > 0)
+          m.worst = (std::max)(m.worst, d);
+        m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(state.elements[e], vertex));
+      }
+    }
+  });
+  Global_measure sum;
+  for(const Global_measure& m : parts)
   {
-    normals[f] = face_normal(mesh, vertex, f);
-    m.flips += is_flipped(mesh, vertex, f, normals[f]);
-    m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
+    sum.energy += m.energy;
+    sum.capped_energy += m.capped_energy;
+    sum.worst = (std::max)(sum.worst, m.worst);
+    sum.sharpest = (std::max)(sum.sharpest, m.sharpest);
+    sum.flips += m.flips;
+    sum.fold_edges += m.fold_edges;
+    sum.nonconvex_quads += m.nonconvex_quads;
   }
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-    if(mesh.opposite[c] > c)
-      m.fold_edges +=
-        is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
-  for(int e = 0; e < state.elements.size(); ++e)
-  {
-    const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
-    const double d = density.value(J);
-    m.energy += d;
-    m.capped_energy += (std::min)(d, cap);
-    if(J.determinant() > 0)
-      m.worst = (std::max)(m.worst, d);
-    m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(state.elements[e], vertex));
-  }
-  return m;
+  return sum;
 }
 
 } // namespace internal

@@ -50,52 +50,59 @@ inline std::vector<char> vertices_of(const Indexed_mesh& mesh, const std::vector
 }
 
 // the largest density of the elements of every face, with the face
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 std::vector<std::pair<double, int>> face_densities(const Optimization_state& state,
                                                    const Density& density)
 {
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-  std::vector<std::pair<double, int>> result;
-  for(int f = 0; f < state.mesh.number_of_faces(); ++f)
-  {
-    double largest = 0;
-    for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
-      largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
-    result.emplace_back(largest, f);
-  }
+  std::vector<std::pair<double, int>> result(state.mesh.number_of_faces());
+  for_each_block<ConcurrencyTag>(int(result.size()), [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+    {
+      double largest = 0;
+      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+        largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
+      result[f] = std::make_pair(largest, f);
+    }
+  });
   return result;
 }
 
 // What only a flattening may mend: faces that are turned over, folded, or not convex.
-inline std::vector<char> defective_faces(const Optimization_state& state)
+template <typename ConcurrencyTag>
+std::vector<char> defective_faces(const Optimization_state& state)
 {
   const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-  std::vector<char> result(mesh.number_of_faces(), 0);
-  std::vector<Vector_3> normals(mesh.number_of_faces());
-  for(int f = 0; f < mesh.number_of_faces(); ++f)
-  {
-    normals[f] = face_normal(mesh, vertex, f);
-    result[f] = is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f);
-  }
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-  {
-    const int o = mesh.opposite[c];
-    if(o > c && is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[o]]))
-      result[mesh.corner_face[c]] = result[mesh.corner_face[o]] = 1;
-  }
+  const int n = mesh.number_of_faces();
+  std::vector<char> result(n, 0);
+  std::vector<Vector_3> normals(n);
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+    {
+      normals[f] = face_normal(mesh, vertex, f);
+      result[f] = is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f);
+    }
+  });
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        if(mesh.opposite[c] >= 0 &&
+           is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]))
+          result[f] = 1;
+  });
   return result;
 }
 
 // The faces with an element beyond `bad` where at least `smallest` of them hang together, by edges. A
 // few bad elements are a matter of their vertices; a whole region may have to be laid out anew.
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 std::vector<char>
 bad_regions(const Optimization_state& state, const Density& density, double bad, int smallest)
 {
   const Indexed_mesh& mesh = state.mesh;
   std::vector<char> result(mesh.number_of_faces(), 0), is_seen(mesh.number_of_faces(), 1);
-  for(const std::pair<double, int>& d : face_densities(state, density))
+  for(const std::pair<double, int>& d : face_densities<ConcurrencyTag>(state, density))
     is_seen[d.second] = !(d.first > bad);
   std::vector<int> region;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
@@ -122,11 +129,11 @@ bad_regions(const Optimization_state& state, const Density& density, double bad,
 }
 
 // The faces with an element beyond `bad`, the worst first: of a large mesh a five-hundredth and some.
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 std::vector<std::pair<double, int>>
 worst_faces(const Optimization_state& state, const Density& density, double bad)
 {
-  std::vector<std::pair<double, int>> faces = face_densities(state, density);
+  std::vector<std::pair<double, int>> faces = face_densities<ConcurrencyTag>(state, density);
   faces.erase(std::remove_if(faces.begin(), faces.end(),
                              [&](const std::pair<double, int>& d) { return !(d.first > bad); }),
               faces.end());
@@ -139,7 +146,7 @@ worst_faces(const Optimization_state& state, const Density& density, double bad)
 }
 
 // forgets among the vertices that moved those further than a ring from bad elements
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 void keep_near_bad(const Optimization_state& state,
                    const Density& density,
                    double bad,
@@ -147,7 +154,7 @@ void keep_near_bad(const Optimization_state& state,
 {
   const Indexed_mesh& mesh = state.mesh;
   std::vector<char> is_near(mesh.number_of_vertices(), 0);
-  for(const std::pair<double, int>& d : face_densities(state, density))
+  for(const std::pair<double, int>& d : face_densities<ConcurrencyTag>(state, density))
     if(d.first > bad)
       for(int c = mesh.face_begin[d.second]; c < mesh.face_begin[d.second + 1]; ++c)
         is_near[mesh.corner_vertex[c]] = 1;

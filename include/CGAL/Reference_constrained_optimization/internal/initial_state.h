@@ -81,10 +81,11 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
 
 // Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free vertices onto it. A reference
 // that is oriented the other way is turned round.
-inline void place_on_reference(const std::vector<Vector_3>& points,
-                               Reference_surface& reference,
-                               Optimization_state& state,
-                               Result& result)
+template <typename ConcurrencyTag = CGAL::Sequential_tag>
+void place_on_reference(const std::vector<Vector_3>& points,
+                        Reference_surface& reference,
+                        Optimization_state& state,
+                        Result& result)
 {
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
@@ -99,14 +100,21 @@ inline void place_on_reference(const std::vector<Vector_3>& points,
     return surface.vertex_begin[v] < surface.vertex_begin[v + 1];
   });
   state.vertices.resize(points.size());
+  for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
+    for(int v = begin; v < end; ++v)
+      if(mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
+      {
+        const int twin = index.find(points[v]);
+        state.vertices[v].on_reference =
+          twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
+      }
+  });
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {
     Placed_vertex& placed = state.vertices[v];
     placed.position = points[v];
     if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
       continue;
-    const int twin = index.find(points[v]);
-    placed.on_reference = twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
     const double distance = (placed.on_reference.position - points[v]).norm();
     if(distance > limit)
       throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +

@@ -84,7 +84,7 @@ Result optimize(PolygonMesh& mesh,
   Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
   const Constraints constraints = read_constraints(mesh, own_np, copy.mesh);
   state.is_free = free_vertices(copy.mesh, constraints);
-  place_on_reference(copy.points, surface, state, result);
+  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result);
   if(loop_parameters.relax_constraints)
     Sliding_vertices(state, constraints, result);
   result.times.setup = seconds_since(start);
@@ -92,7 +92,7 @@ Result optimize(PolygonMesh& mesh,
   const auto& density = energy.density();
   typedef typename std::decay<decltype(density)>::type Density;
   const double infinity = std::numeric_limits<double>::infinity();
-  const Global_measure initial = measure(state, density, infinity);
+  const Global_measure initial = measure<ConcurrencyTag>(state, density, infinity);
   result.initial_energy = initial.energy / elements.size();
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
@@ -101,7 +101,7 @@ Result optimize(PolygonMesh& mesh,
   const auto finish = [&]() {
     write_points(mesh, vpm, copy.points, state);
     write_locations(mesh, reference, own_np, state);
-    const Global_measure final = measure(state, density, infinity);
+    const Global_measure final = measure<ConcurrencyTag>(state, density, infinity);
     result.final_energy = final.energy / elements.size();
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;

@@ -63,7 +63,8 @@ public:
   void run()
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    Global_measure before = measure(m_state, m_density, std::numeric_limits<double>::infinity());
+    Global_measure before =
+      measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
     const double typical = lower_half_mean(m_state, m_density);
@@ -73,7 +74,7 @@ public:
     m_limits.bad = 1.5 * typical;
     m_limits.sharpest = before.sharpest;
     m_limits.accepts_all = m_parameters.accepts_all;
-    before = measure(m_state, m_density, m_cap);
+    before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
@@ -107,7 +108,7 @@ private:
       m_has_refused = false;
       ++m_result.number_of_iterations;
       const bool complete = visit_active();
-      const Global_measure after = measure(m_state, m_density, m_cap);
+      const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
       m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
       if(!complete)
         return false;
@@ -116,7 +117,8 @@ private:
       const bool repairs =
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       if(!falls && repairs)
-        keep_near_bad(m_state, m_density, m_limits.bad, m_moved); // all is well elsewhere
+        keep_near_bad<ConcurrencyTag>(m_state, m_density, m_limits.bad,
+                                      m_moved); // all is well elsewhere
       const bool moves = std::find(m_moved.begin(), m_moved.end(), char(1)) != m_moved.end();
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
@@ -155,9 +157,9 @@ private:
       return visit(m_is_active, m_selection);
     const Indexed_mesh& mesh = m_state.mesh;
     const int smallest_region = 20;
-    std::vector<char> is_wanted = defective_faces(m_state);
+    std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     const std::vector<char> is_bad =
-      bad_regions(m_state, m_density, 2 * m_limits.bad, smallest_region);
+      bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
     is_wanted = faces_around(mesh, vertices_of(mesh, is_wanted), 2);
@@ -187,7 +189,7 @@ private:
     for(int pass = 0; pass < maximum_passes && m_parameters.use_on_surface_steps; ++pass)
     {
       const std::vector<std::pair<double, int>> worst =
-        worst_faces(m_state, m_density, m_limits.bad);
+        worst_faces<ConcurrencyTag>(m_state, m_density, m_limits.bad);
       if(worst.empty())
         return true;
       m_limits.worst = (std::min)(m_limits.worst, worst.front().first);
