@@ -41,6 +41,7 @@ struct Recorder : RCO::Default_visitor
   std::size_t iterations = 0, rounds = 0, patches = 0, accepted = 0, faces = 0, open_rounds = 0;
   std::size_t announced = 0;
   double energy_change = 0;
+  std::size_t finishing = 0; // accepted patches of the finishing stage
   long defect_change = 0;
   std::vector<double> energies;
 
@@ -68,6 +69,8 @@ struct Recorder : RCO::Default_visitor
       ++accepted;
       RCO_CHECK(r.defects_after < r.defects_before ||
                 (r.defects_after == r.defects_before && r.energy_after < r.energy_before));
+      // in the finishing stage energies have a barrier, and steps may be taken back
+      finishing += r.is_finishing;
       energy_change += r.energy_after - r.energy_before;
       defect_change += long(r.defects_after) - long(r.defects_before);
     }
@@ -312,8 +315,9 @@ Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
   RCO_CHECK_EQUAL(r.sum_of_patch_sizes, double(seen.faces));
   RCO_CHECK_EQUAL(seen.open_rounds, std::size_t(0));
   RCO_CHECK_LESS_EQUAL(r.number_of_flattened_patches, r.number_of_accepted_patches);
-  RCO_CHECK_EQUAL(long(defects_after) - long(defects_before), seen.defect_change);
-  if(r.initial_energy < 1e6)
+  if(seen.finishing == 0)
+    RCO_CHECK_EQUAL(long(defects_after) - long(defects_before), seen.defect_change);
+  if(seen.finishing == 0 && r.initial_energy < 1e6)
   {
     const double elements =
       double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1);
@@ -803,8 +807,9 @@ void test_endings()
     RCO_CHECK_EQUAL(out.recorder.patches, std::size_t(patches + 1));
     // what was accepted up to then is written, and nothing else
     const double n = double(rough.faces.size());
-    RCO_CHECK_NEAR(m.energy * n, complete.result.initial_energy * n + out.recorder.energy_change,
-                   1e-7 * complete.result.initial_energy * n);
+    if(out.recorder.finishing == 0)
+      RCO_CHECK_NEAR(m.energy * n, complete.result.initial_energy * n + out.recorder.energy_change,
+                     1e-7 * complete.result.initial_energy * n);
     if(out.recorder.accepted > 0)
       RCO_CHECK_LESS(out.recorder.energy_change, 0.);
   }

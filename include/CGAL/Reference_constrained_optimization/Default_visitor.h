@@ -24,6 +24,9 @@ struct Patch_report
   std::size_t defects_before = 0;  ///< flips, fold edges and non-convex quads before.
   std::size_t defects_after = 0;   ///< the same after.
   bool accepted = false;           ///< whether the new positions were kept.
+  /// whether the patch belongs to the finishing stage. There the energies contain its barrier on
+  /// angles, and what a step of the stage accepted is taken back if the whole step did not pay.
+  bool is_finishing = false;
 };
 
 /*!

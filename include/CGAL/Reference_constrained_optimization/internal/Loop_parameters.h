@@ -63,6 +63,15 @@ inline Selection_parameters sized(Selection_parameters selection, const Indexed_
   return selection;
 }
 
+// of patches around bad elements that are flattened
+inline Selection_parameters small(Selection_parameters selection, const Indexed_mesh& mesh)
+{
+  const int size = triangles_to_faces(mesh, 200);
+  if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
+    selection.maximum_patch_size = size;
+  return selection;
+}
+
 // Of the patches that are optimized on the surface. In a large patch a vertex can go a long way at
 // once; a large mesh is divided nevertheless, so that there is work for several threads.
 inline int on_surface_patch_size(const Selection_parameters& selection, const Indexed_mesh& mesh)

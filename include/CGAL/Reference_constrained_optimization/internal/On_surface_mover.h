@@ -124,7 +124,7 @@ private:
       taken += patch.is_free[v] ? steps[v] : 0;
     taken /= patch.number_of_free_vertices;
     if(taken > 0.95)
-      m_strain_resistance = (std::max)(0.2 * initial_resistance, 0.4 * m_strain_resistance);
+      m_strain_resistance = (std::max)(0.02 * initial_resistance, 0.25 * m_strain_resistance);
     else if(taken < 0.8)
       m_strain_resistance = (std::min)(6 * initial_resistance, 2.5 * m_strain_resistance);
   }

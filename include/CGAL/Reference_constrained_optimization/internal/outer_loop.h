@@ -53,6 +53,7 @@ public:
       m_start(start),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
+      m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
       m_partition(state.mesh, on_surface_patch_size(parameters.selection, state.mesh)),
       m_small_partition(state.mesh, small_patch_size(parameters.selection, state.mesh)),
       m_rounds(state.mesh, parameters.halo),
@@ -91,8 +92,11 @@ public:
     m_is_active = faces_around(mesh, m_state.is_free, 0);
 
     m_result.status = Status::iteration_limit;
-    if(iterate_to_convergence(before) && search_worst() && m_parameters.use_finishing_stage &&
-       prizes_angles(m_state.elements))
+    if(!iterate_to_convergence(before))
+      return;
+    const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
+    if(revisits && revisit_worst() && m_parameters.use_finishing_stage &&
+       m_parameters.use_on_surface_steps && prizes_angles(m_state.elements))
       finish_angles();
   }
 
@@ -179,14 +183,15 @@ private:
     return before - after > m_parameters.energy_tolerance * scale;
   }
 
-  // The elements that Newton steps left behind, by a search for better places of their vertices, as
-  // long as that helps. False if it was cut short.
-  bool search_worst()
+  // The worst elements, by themselves, as long as that helps: by Newton steps in small patches around
+  // them, and where these end, by a search for better places of their vertices. False if it was cut
+  // short.
+  bool revisit_worst()
   {
     const Indexed_mesh& mesh = m_state.mesh;
     const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
-    for(int pass = 0; pass < maximum_passes && m_parameters.use_on_surface_steps; ++pass)
+    for(int pass = 0; pass < maximum_passes; ++pass)
     {
       const std::vector<std::pair<double, int>> worst =
         worst_faces<ConcurrencyTag>(m_state, m_density, m_limits.bad);
@@ -205,8 +210,12 @@ private:
       before = after;
       m_limits.searched = worst.back().first;
       const std::vector<char> around = faces_around(mesh, vertices_of(mesh, is_bad), 3);
-      if(!visit_once(around, m_small_partition, Moves::on_surface, m_density) ||
-         !visit_once(around, m_small_partition, Moves::by_search, m_density))
+      const bool goes_on =
+        m_parameters.use_on_surface_steps
+          ? visit_once(around, m_small_partition, Moves::on_surface, m_density) &&
+              visit_once(around, m_small_partition, Moves::by_search, m_density)
+          : visit(is_bad, m_small_selection);
+      if(!goes_on)
         return false;
     }
     return true;
@@ -215,6 +224,7 @@ private:
   void finish_angles()
   {
     const Acceptance_test::Limits limits = m_limits;
+    m_is_finishing = true;
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
     std::vector<Placed_vertex> vertices;
     Drift_guard drift_guard;
@@ -235,6 +245,7 @@ private:
         m_drift_guard = drift_guard;
       });
     m_limits = limits;
+    m_is_finishing = false;
   }
 
   // visits the wanted faces, in patches that are flattened or not, until all are touched; false if it
@@ -366,6 +377,7 @@ private:
     report.defects_before = std::size_t(s.decision.before.defects());
     report.defects_after = std::size_t(s.decision.after.defects());
     report.accepted = s.decision.accepted;
+    report.is_finishing = m_is_finishing;
     m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
     m_visitor.on_patch_end(report);
   }
@@ -377,7 +389,7 @@ private:
   Result& m_result;
   std::chrono::steady_clock::time_point m_start;
   CGAL::Random m_random;
-  Patch_selection m_selection;
+  Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;
   Patch_rounds m_rounds;
   For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
@@ -388,6 +400,7 @@ private:
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits;
   bool m_has_refused = false;
+  bool m_is_finishing = false;
   double m_cap = 0;
   double m_rest_energy = 0;
 };

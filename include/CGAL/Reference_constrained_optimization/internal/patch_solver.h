@@ -11,7 +11,9 @@
 #include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
 
 namespace CGAL {
@@ -110,7 +112,10 @@ private:
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
-      proposes = decision.accepted && gain >= 0.25 * m_tolerance * decision.before.energy &&
+      // a few elements that nothing can open may own the sum
+      const double scale =
+        (std::min)(std::abs(decision.before.energy), limits.bad * double(s.patch.elements.size()));
+      proposes = decision.accepted && gain >= 0.25 * m_tolerance * scale &&
                  pass + 1 < m_proposals &&
                  mover.propose_again(s.patch, m_acceptance.steps(), density);
     }

@@ -60,7 +60,8 @@ public:
   void set_strain_resistance(double part) { m_strain_resistance = part; }
 
   // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
-  // energy by less than `tolerance` times it.
+  // energy by less than `tolerance` times what it would be if all elements were like the best: a few
+  // that nothing can open may own the sum.
   template <typename Problem, typename Density>
   Outcome minimize(const Problem& problem,
                    const Density& density,
@@ -81,7 +82,7 @@ public:
         break;
       damp(problem, u);
       const double decrease = m_right.dot(m_direction);
-      if(!(decrease > tolerance * std::abs(energy)))
+      if(!(decrease > tolerance * m_scale))
         break;
 
       double t = (std::min)(1., 0.9 * largest_flip_free_step(problem, u));
@@ -103,7 +104,7 @@ public:
       u = moved;
       energy = outcome.final_energy = trial;
       ++outcome.steps;
-      if(step + 1 == maximum_steps || gained < tolerance * std::abs(energy))
+      if(step + 1 == maximum_steps || gained < tolerance * m_scale)
         break;
       assemble(problem, density, u);
     }
@@ -127,7 +128,11 @@ private:
   {
     m_system.set_zero();
     m_right.setZero();
-    double sum = 0;
+    double sum = 0, least = std::numeric_limits<double>::infinity();
+    const auto add = [&](double value) {
+      sum += value;
+      least = (std::min)(least, std::abs(value));
+    };
     Eigen::Vector4d gradient;
     Eigen::Matrix4d hessian;
     Eigen::Matrix<double, 4, 2> motion[3];
@@ -139,10 +144,10 @@ private:
       const int variable[3] = {m_variable[t[0]], m_variable[t[1]], m_variable[t[2]]};
       if(variable[0] < 0 && variable[1] < 0 && variable[2] < 0)
       {
-        sum += density.value(J);
+        add(density.value(J));
         continue;
       }
-      sum += projected_derivatives(density, J, gradient, hessian, 0);
+      add(projected_derivatives(density, J, gradient, hessian, 0));
       hessian.diagonal().array() += m_strain_resistance * hessian.trace();
 
       // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
@@ -168,6 +173,7 @@ private:
           m_system.add_side(int(e), i, a, b, motion[i].transpose() * bent);
       }
     }
+    m_scale = least * double(problem.triples.size());
     return sum;
   }
 
@@ -236,6 +242,7 @@ private:
 
   int m_size = 0;
   double m_strain_resistance = 0;
+  double m_scale = 0; // of the energy, for tolerances
   Newton_system m_system;
   std::vector<int> m_variable;
   Eigen::VectorXd m_right, m_direction, m_undamped;
