@@ -28,9 +28,9 @@ namespace CGAL {
  *
  * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
- * mapped back onto the reference. Where nothing is folded, regions are optimized in the tangent planes
- * of their vertices instead, and single vertices that are left behind are searched a better place for.
- * New positions are kept only if, measured on the reference, the number of flipped faces, folded
+ * mapped back onto the reference. Where nothing is folded, regions are optimized in the tangent
+ * planes of their vertices instead, and for single vertices that are left behind a better place is
+ * searched. New positions are kept only if, measured on the reference, the number of flipped faces, folded
  * edges and non-convex quads falls, or does not change while the energy falls (at the end, unless
  * `use_finishing_stage` is `false`, the energy with a barrier on small angles).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
@@ -143,16 +143,15 @@ namespace CGAL {
  *     \cgalParamDescription{whether only the surroundings of flips, folds, non-convex quads and
  *                           regions of bad elements are flattened, and everything is optimized
  *                           directly on the reference, in the tangent planes of the vertices:
- *                           faster, and more accurate. At the end the vertices of the worst
- *                           elements are then also searched a better place for, one by one. With
- *                           `false` every patch is flattened, as in the paper, but for the finishing
- *                           stage}
+ *                           faster, and more accurate. At the end a better place is then searched
+ *                           for each vertex around the worst elements. With `false` every patch is
+ *                           flattened, as in the paper, but for the finishing stage}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_finishing_stage}
- *     \cgalParamDescription{whether, in the end, the smallest angles are raised by a barrier on angles
- *                           below a rising target, at a small cost to the energy and of at most 0.2
+ *     \cgalParamDescription{whether, in the end, the smallest angles are raised by a barrier on
+ *                           angles below a rising target, at a small cost to the energy and of at most 0.2
  *                           degrees in the mean over the faces of their smallest angle. It applies
  *                           to energies whose rest triangles are all equilateral, and has no effect
  *                           for others}
