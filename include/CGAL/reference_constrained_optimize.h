@@ -30,9 +30,9 @@ namespace CGAL {
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
  * mapped back onto the reference. Where nothing is folded, regions are optimized in the tangent
  * planes of their vertices instead, and for single vertices that are left behind a better place is
- * searched. New positions are kept only if, measured on the reference, the number of flipped faces, folded
- * edges and non-convex quads falls, or does not change while the energy falls (at the end, unless
- * `use_finishing_stage` is `false`, the energy with a barrier on small angles).
+ * searched. New positions are kept only if, measured on the reference, the number of flipped faces,
+ * folded edges and non-convex quads falls, or does not change while the energy falls (in the
+ * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
  * and seed give the same bits for any number of threads.
@@ -151,10 +151,10 @@ namespace CGAL {
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_finishing_stage}
  *     \cgalParamDescription{whether, in the end, the smallest angles are raised by a barrier on
- *                           angles below a rising target, at a small cost to the energy and of at most 0.2
- *                           degrees in the mean over the faces of their smallest angle. It applies
- *                           to energies whose rest triangles are all equilateral, and has no effect
- *                           for others}
+ *                           angles below a rising target, at a small cost to the energy and of at
+ *                           most 0.2 degrees in the mean over the faces of their smallest angle. It
+ *                           applies to energies whose rest triangles are all equilateral, and has
+ *                           no effect for others}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
