@@ -28,9 +28,11 @@ namespace CGAL {
  *
  * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
- * mapped back onto the reference. Where all is well, regions are optimized in the tangent planes of
- * their vertices instead. New positions are kept only if, measured on the reference, the number of
- * flipped faces, folded edges and non-convex quads falls, or does not change while the energy falls.
+ * mapped back onto the reference. Where nothing is folded, regions are optimized in the tangent
+ * planes of their vertices instead, and for single vertices that are left behind a better place is
+ * searched. New positions are kept only if, measured on the reference, the number of flipped faces,
+ * folded edges and non-convex quads falls, or does not change while the energy falls (in the
+ * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
  * and seed give the same bits for any number of threads.
@@ -68,7 +70,7 @@ namespace CGAL {
  *     \cgalParamDefault{`30`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{random_seed}
- *     \cgalParamDescription{the seed of the order in which patches are started}
+ *     \cgalParamDescription{the seed of the draws that decide where patches start}
  *     \cgalParamType{`unsigned int`}
  *     \cgalParamDefault{`0`}
  *   \cgalParamNEnd
@@ -119,11 +121,13 @@ namespace CGAL {
  *     \cgalParamDefault{`2e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
- *     \cgalParamDescription{the largest number of faces of a patch, flattened or not}
+ *     \cgalParamDescription{the largest number of faces of a patch that is flattened, and about the
+ *                           number of faces of one that is not: the active faces are divided evenly
+ *                           among these, so that some are larger}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
- *                       number of triangles, between 400 and 4000, the others the same, between 700
- *                       and 4000; a quad counts as two triangles}
+ *                       number of triangles, between 400 and 4000, the others a quarter of the
+ *                       mesh, between 4000 and 20000 triangles; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
  *     \cgalParamDescription{whether vertices on lines slide along them: vertices of constrained edges
@@ -136,16 +140,21 @@ namespace CGAL {
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_on_surface_steps}
- *     \cgalParamDescription{whether only the surroundings of flips, folds and bad elements are
- *                           flattened, and all regions are optimized directly on the reference, in
- *                           the tangent planes of their vertices: faster, and more accurate.
- *                           With `false` every patch is flattened, as in the paper}
+ *     \cgalParamDescription{whether only the surroundings of flips, folds, non-convex quads and
+ *                           regions of bad elements are flattened, and everything is optimized
+ *                           directly on the reference, in the tangent planes of the vertices:
+ *                           faster, and more accurate. At the end a better place is then searched
+ *                           for each vertex around the worst elements. With `false` every patch is
+ *                           flattened, as in the paper, but for the finishing stage}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{use_finishing_stage}
- *     \cgalParamDescription{whether, in the end, the worst elements are visited again in small
- *                           patches around them}
+ *     \cgalParamDescription{whether, in the end, the smallest angles are raised by a barrier on
+ *                           angles below a rising target, at a small cost to the energy and of at
+ *                           most 0.2 degrees in the mean over the faces of their smallest angle. It
+ *                           applies to energies whose rest triangles are all equilateral, and has
+ *                           no effect for others}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd

@@ -101,9 +101,9 @@ CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
 CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
 /// starts a list with the largest distance from the reference to the mesh that steps may cause.
 CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
-/// starts a list with whether patches may be optimized directly on the reference.
+/// starts a list with whether patches are optimized directly on the reference where they can be.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)
-/// starts a list with whether a last stage works on the worst elements alone.
+/// starts a list with whether a last stage raises the smallest angles.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
 /// starts a list with a property map that receives every vertex' location on the reference.
 CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
