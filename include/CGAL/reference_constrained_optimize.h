@@ -145,7 +145,7 @@ namespace CGAL {
  *                           directly on the reference, in the tangent planes of the vertices:
  *                           faster, and more accurate. At the end a better place is then searched
  *                           for each vertex around the worst elements. With `false` every patch is
- *                           flattened, as in the paper, but for the finishing stage}
+ *                           flattened, as in the paper}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
@@ -153,8 +153,9 @@ namespace CGAL {
  *     \cgalParamDescription{whether, in the end, the smallest angles are raised by a barrier on
  *                           angles below a rising target, at a small cost to the energy and of at
  *                           most 0.2 degrees in the mean over the faces of their smallest angle. It
- *                           applies to energies whose rest triangles are all equilateral, and has
- *                           no effect for others}
+ *                           applies to energies whose rest triangles are all equilateral. With
+ *                           `use_on_surface_steps(false)` the worst elements are visited once more
+ *                           in small flattened patches instead}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
