@@ -588,13 +588,13 @@ int main()
   test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density());
 
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);
-  test_finishing("torus", scrambled(ring, 0.3, 10, onto_torus(1, 0.4)), ring, 0);
+  test_finishing("torus", scrambled(ring, 0.3, 10, onto_torus(1, 0.4)), ring, 0.5);
   test_finishing("sphere", scrambled(ball, 0.3, 11, onto_sphere), ball, 0);
   test_finishing("square", scrambled(square, 0.3, 12, onto_plane), square, 0);
 #ifdef RCO_DATA_DIR
   const Shape blobby = read_off(std::string(RCO_DATA_DIR) + "/blobby.off");
   if(!blobby.faces.empty())
-    test_finishing("blobby", blobby, blobby, 1);
+    test_finishing("blobby", blobby, blobby, 2);
 #endif
   return report();
 }
