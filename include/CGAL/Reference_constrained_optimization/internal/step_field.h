@@ -18,7 +18,7 @@ namespace internal {
 // Which part of its way each vertex of a patch goes. A step is cut where it does harm; it must not
 // end there abruptly, for that would shear what is between a vertex that stays and one that goes.
 // The parts of two neighbours therefore differ by no more than a fifth, and what they are apart more
-// than by the edge between them is no more than a third of that edge.
+// than by the edge between them is no more than three tenths of that edge.
 class Step_field
 {
 public:
