@@ -1259,7 +1259,7 @@ struct Problem_tag
 template struct Access<Problem_tag, &internal::On_surface_mover::m_problem>;
 struct Frames_tag
 {
-  typedef std::vector<internal::Tangent_problem::Frame> internal::On_surface_mover::*type;
+  typedef std::vector<internal::Tangent_frame> internal::On_surface_mover::*type;
   friend type member(Frames_tag);
 };
 template struct Access<Frames_tag, &internal::On_surface_mover::m_frames>;

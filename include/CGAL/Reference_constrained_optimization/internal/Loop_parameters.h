@@ -26,7 +26,8 @@ struct Loop_parameters
   double movement_tolerance = 0.01; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
-  int proposals_per_patch = 3;
+  int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last
+  int on_surface_proposals = 3;
   bool use_finishing_stage = true;
   int halo = 4; // rings around the patches of a round in which no other patch of it starts
   Selection_parameters selection;

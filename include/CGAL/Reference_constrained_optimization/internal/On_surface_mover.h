@@ -50,6 +50,17 @@ struct Tangent_problem
   const Eigen::Matrix2d& corner_map(std::size_t e, int i) const { return corner_maps[3 * e + i]; }
 };
 
+// The resistance to strain after a step of which that part was taken: the next step may be bolder if
+// nearly all of it was, and must be more careful if much of it was cut.
+constexpr double largest_resistance = 0.05;
+inline double adapted_resistance(double resistance, double taken)
+{
+  const double smallest_resistance = 0.001;
+  if(taken > 0.95)
+    return (std::max)(smallest_resistance, 0.25 * resistance);
+  return taken < 0.8 ? (std::min)(6 * largest_resistance, 2.5 * resistance) : resistance;
+}
+
 // Moves the vertices of a patch directly along R: Newton steps in the tangent planes, then back to R
 // by the local closest point. Much cheaper than a flattened patch, as accurate where steps are
 // small; but what is folded stays folded.
@@ -60,6 +71,9 @@ public:
     : m_reference(reference),
       m_newton_steps(newton_steps)
   {}
+
+  // of the first step of the patches to come; see Projected_newton
+  void set_strain_resistance(double part) { m_first_resistance = part; }
 
   template <typename Density>
   bool propose(const Patch& patch, const Density& density)
@@ -75,7 +89,7 @@ public:
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
     m_newton.analyze(m_problem);
-    m_strain_resistance = initial_resistance;
+    m_strain_resistance = m_first_resistance;
     const bool proposes = step(patch, density);
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -123,10 +137,7 @@ private:
     for(std::size_t v = 0; v < steps.size(); ++v)
       taken += patch.is_free[v] ? steps[v] : 0;
     taken /= patch.number_of_free_vertices;
-    if(taken > 0.95)
-      m_strain_resistance = (std::max)(0.02 * initial_resistance, 0.25 * m_strain_resistance);
-    else if(taken < 0.8)
-      m_strain_resistance = (std::min)(6 * initial_resistance, 2.5 * m_strain_resistance);
+    m_strain_resistance = adapted_resistance(m_strain_resistance, taken);
   }
 
   template <typename Density>
@@ -207,11 +218,9 @@ private:
     }
   }
 
-  static constexpr double initial_resistance = 0.05;
-
   const Reference_surface& m_reference;
   int m_newton_steps;
-  double m_strain_resistance = 0;
+  double m_first_resistance = largest_resistance, m_strain_resistance = largest_resistance;
   Projected_newton m_newton;
   Tangent_problem m_problem;
   std::vector<Tangent_frame> m_frames; // per vertex

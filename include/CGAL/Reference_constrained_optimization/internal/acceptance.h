@@ -32,7 +32,7 @@ struct Patch_measure
 class Acceptance_test
 {
 public:
-  // bounds on single elements and on single vertices of R
+  // bounds on single elements and on single vertices of R, and what else changes between iterations
   struct Limits
   {
     double worst = 0;    // no step may take an element beyond it, or further beyond
@@ -42,7 +42,8 @@ public:
     double bad = 0; // elements beyond it are allowed more drift
     // elements with a density or a cosine of an angle beyond these are what a search is for
     double searched = 0, sharp = 1;
-    bool accepts_all = false; // what the mover proposes is kept without a test
+    double strain_resistance = 0; // where Newton steps on the surface begin
+    bool accepts_all = false;     // what the mover proposes is kept without a test
   };
 
   struct Decision

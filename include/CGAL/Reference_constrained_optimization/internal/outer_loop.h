@@ -75,6 +75,7 @@ public:
     m_limits.bad = 1.5 * typical;
     m_limits.sharpest = before.sharpest;
     m_limits.accepts_all = m_parameters.accepts_all;
+    m_limits.strain_resistance = largest_resistance;
     before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
@@ -110,6 +111,7 @@ private:
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
       m_has_refused = false;
+      m_taken = m_could_move = 0;
       ++m_result.number_of_iterations;
       const bool complete = visit_active();
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
@@ -117,6 +119,10 @@ private:
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
+      if(m_could_move > 0)
+        m_limits.strain_resistance =
+          (std::min)(largest_resistance,
+                     adapted_resistance(m_limits.strain_resistance, m_taken / m_could_move));
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
       const bool repairs =
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
@@ -378,6 +384,11 @@ private:
     report.defects_after = std::size_t(s.decision.after.defects());
     report.accepted = s.decision.accepted;
     report.is_finishing = m_is_finishing;
+    if(s.was_tried && !s.is_flattened)
+    {
+      m_taken += s.taken * s.patch.number_of_free_vertices;
+      m_could_move += s.patch.number_of_free_vertices;
+    }
     m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
     m_visitor.on_patch_end(report);
   }
@@ -399,6 +410,7 @@ private:
   std::vector<char> m_moved;                     // per vertex
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits;
+  double m_taken = 0, m_could_move = 0; // in this iteration on the surface: of whole steps
   bool m_has_refused = false;
   bool m_is_finishing = false;
   double m_cap = 0;

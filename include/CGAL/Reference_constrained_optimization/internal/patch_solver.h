@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace CGAL {
@@ -33,6 +34,7 @@ struct Solved_patch
   bool was_tried = false; // has free vertices
   bool is_flattened = false;
   bool overlaps = false;
+  double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
 };
@@ -47,7 +49,8 @@ public:
       m_flattened_mover(state.reference, parameters.mover),
       m_on_surface_mover(state.reference, parameters.on_surface_newton_steps),
       m_search_mover(state.reference),
-      m_proposals(parameters.proposals_per_patch),
+      m_flattened_proposals(parameters.proposals_per_patch),
+      m_on_surface_proposals(parameters.on_surface_proposals),
       m_tolerance(parameters.energy_tolerance)
   {}
 
@@ -71,7 +74,7 @@ public:
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
-      improve(m_flattened_mover, state, density, limits, s);
+      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, limits, s);
       s.path = m_flattened_mover.flattening().path;
       s.overlaps = m_flattened_mover.overlaps();
       s.distortion = m_flattened_mover.flattening().distortion;
@@ -80,10 +83,15 @@ public:
     else if(moves == Moves::by_search)
     {
       m_search_mover.set_target(limits.searched, limits.sharp);
-      improve(m_search_mover, state, density, limits, s);
+      improve(m_search_mover, 1, m_tolerance, state, density, limits, s);
     }
     else
-      improve(m_on_surface_mover, state, density, limits, s);
+    {
+      // its steps are cheap: a small gain is worth another
+      m_on_surface_mover.set_strain_resistance(limits.strain_resistance);
+      improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
+              limits, s);
+    }
     s.placed = s.patch.placed;
   }
 
@@ -91,6 +99,8 @@ private:
   // what is prepared once serves several proposals
   template <typename Mover, typename Density>
   void improve(Mover& mover,
+               int maximum_proposals,
+               double tolerance,
                const Optimization_state& state,
                const Density& density,
                const Acceptance_test::Limits& limits,
@@ -109,17 +119,25 @@ private:
         s.decision.after = decision.after;
         s.patch.placed = m_acceptance.candidate();
         s.patch.guests = m_acceptance.guests();
+        s.taken = mean_part(s.patch, m_acceptance.steps());
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
       // a few elements that nothing can open may own the sum
       const double scale =
         (std::min)(std::abs(decision.before.energy), limits.bad * double(s.patch.elements.size()));
-      proposes = decision.accepted && gain >= 0.25 * m_tolerance * scale &&
-                 pass + 1 < m_proposals &&
+      proposes = decision.accepted && gain >= tolerance * scale && pass + 1 < maximum_proposals &&
                  mover.propose_again(s.patch, m_acceptance.steps(), density);
     }
     s.optimization_time = mover.optimization_time();
+  }
+
+  static double mean_part(const Patch& patch, const std::vector<double>& parts)
+  {
+    double sum = 0;
+    for(std::size_t v = 0; v < parts.size(); ++v)
+      sum += patch.is_free[v] ? parts[v] : 0;
+    return sum / patch.number_of_free_vertices;
   }
 
   Patch_builder m_builder;
@@ -127,7 +145,7 @@ private:
   On_surface_mover m_on_surface_mover;
   Search_mover m_search_mover;
   Acceptance_test m_acceptance;
-  int m_proposals;
+  int m_flattened_proposals, m_on_surface_proposals;
   double m_tolerance;
 };
 
