@@ -1347,10 +1347,13 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
     RCO_CHECK_NEAR((frames[v].transpose() * frames[v] - Eigen::Matrix2d::Identity()).norm(), 0.,
                    1e-14);
     const internal::Surface_point& at = patch.placed[v].on_reference;
-    const Vector_3 normal = at.barycentric.minCoeff() > 0
-                              ? surface.face_normal(at.face).normalized()
-                              : patch.placed[v].normal;
-    RCO_CHECK_LESS((frames[v].transpose() * normal).norm(), 1e-14);
+    // the plane is that of a face of R on which the vertex lies
+    double angle = 1;
+    for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
+      if((surface.closest_in_face(at.position, f).position - at.position).norm() < 1e-13)
+        angle =
+          (std::min)(angle, (frames[v].transpose() * surface.face_normal(f).normalized()).norm());
+    RCO_CHECK_LESS(angle, 1e-13);
     if(!patch.is_free[v])
       continue;
     for(int i = 0; i < 2; ++i, ++variable)

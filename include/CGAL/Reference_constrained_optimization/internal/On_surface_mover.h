@@ -149,16 +149,15 @@ private:
     for(std::size_t v = 0; v < patch.vertices.size(); ++v)
       if(patch.slides(int(v)))
         m_frames[v] << patch.lines->tangent(patch.placed[v].on_line), Vector_3::Zero();
-      else if(patch.is_free[v])
+      else
       {
         // only R's own planes make the model one of first order; where several meet it is the one
         // that the vertex is about to enter
         const Surface_point& on_reference = patch.placed[v].on_reference;
-        m_frames[v] = tangent_frame(
-          m_reference.face_normal(face_towards(m_reference, on_reference, m_descent[v])));
+        const int face = patch.is_free[v] ? face_towards(m_reference, on_reference, m_descent[v])
+                                          : on_reference.face;
+        m_frames[v] = tangent_frame(m_reference.face_normal(face));
       }
-      else
-        m_frames[v].setZero();
     m_problem.corner_maps.resize(3 * patch.elements.size());
     for(std::size_t e = 0; e < patch.elements.size(); ++e)
       for(int i = 0; i < 3; ++i)

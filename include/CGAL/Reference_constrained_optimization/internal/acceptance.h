@@ -76,6 +76,7 @@ public:
       std::swap(m_before, m_after);
     }
     m_after = m_before;
+    forget_offenders();
     mark_bad(patch);
     m_steps.start(patch);
     m_candidate = patch.placed;
@@ -104,6 +105,7 @@ public:
         cut_offenders(patch, attempt);
       else
         m_steps.cut_all(patch, 0.5);
+      forget_offenders();
     }
     decision.after = decision.before;
     return decision;
@@ -142,8 +144,8 @@ private:
     m_changed.resize(n);
     for(int f = 0; f < n; ++f)
       m_changed[f] = f;
-    m_is_offender.assign(patch.vertices.size(), 0);
     m_offenders.clear();
+    m_is_offender.assign(patch.vertices.size(), 0);
   }
 
   // evaluates the faces in m_changed
@@ -344,10 +346,13 @@ private:
       }
     }
     for(const int v : m_offenders)
-    {
       m_steps.cut(patch, v, attempt < 3 ? 0.4 : 0.);
+  }
+
+  void forget_offenders()
+  {
+    for(const int v : m_offenders)
       m_is_offender[v] = 0;
-    }
     m_offenders.clear();
   }
 

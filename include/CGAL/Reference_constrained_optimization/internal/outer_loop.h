@@ -182,7 +182,7 @@ private:
   // What is left to gain is what the energy has above that of elements that are all at rest.
   bool has_fallen(double before, double after) const
   {
-    const double floor = 0.01;
+    const double floor = 0.001;
     const double excess = before - m_rest_energy;
     const double scale =
       excess > 0 ? (std::max)(excess, floor * std::abs(before)) : std::abs(before);
@@ -211,7 +211,10 @@ private:
         is_bad[d.second] = 1;
         after += std::log(d.first / m_limits.bad);
       }
-      if(!(after < 0.9 * before))
+      // a search has much to gain, or nothing
+      const double enough =
+        m_parameters.use_on_surface_steps ? 0.9 * before : before - 0.01 * double(worst.size());
+      if(!(after < enough))
         return true;
       before = after;
       m_limits.searched = worst.back().first;
