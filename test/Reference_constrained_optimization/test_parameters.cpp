@@ -199,13 +199,13 @@ void test_calls()
     CGAL::reference_constrained_optimize(mesh, reference, energy, params::energy_tolerance(0.9));
   RCO_CHECK_LESS_EQUAL(loose.number_of_iterations, plain.number_of_iterations);
 
-  // all patches flattened, or only those of the first iteration and of trouble
+  // all patches flattened, or only those of trouble, of which this mesh may have none
   mesh = start;
   const RCO::Result flattened = CGAL::reference_constrained_optimize(
     mesh, reference, energy, params::use_on_surface_steps(false));
   RCO_CHECK_EQUAL(flattened.number_of_flattened_patches, flattened.number_of_accepted_patches);
   RCO_CHECK_LESS(plain.number_of_flattened_patches, plain.number_of_accepted_patches);
-  RCO_CHECK_LESS(0u, plain.number_of_flattened_patches);
+  RCO_CHECK_LESS(0u, flattened.number_of_flattened_patches);
   // without the last stage and without the guard it still works
   mesh = start;
   const RCO::Result bare = CGAL::reference_constrained_optimize(

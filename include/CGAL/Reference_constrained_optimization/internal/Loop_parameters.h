@@ -23,7 +23,7 @@ struct Loop_parameters
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 2e-3;
-  double movement_tolerance = 0.01; // part of the mean edge length at a vertex
+  double movement_tolerance = 0.003; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last
@@ -71,6 +71,13 @@ inline Selection_parameters small(Selection_parameters selection, const Indexed_
   if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
     selection.maximum_patch_size = size;
   return selection;
+}
+
+// what the user wants no patch to exceed
+inline int largest_patch_size(const Selection_parameters& selection)
+{
+  return selection.maximum_patch_size > 0 ? selection.maximum_patch_size
+                                          : (std::numeric_limits<int>::max)();
 }
 
 // Of the patches that are optimized on the surface. In a large patch a vertex can go a long way at

@@ -54,8 +54,12 @@ public:
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters.selection, state.mesh)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
-      m_partition(state.mesh, on_surface_patch_size(parameters.selection, state.mesh)),
-      m_small_partition(state.mesh, small_patch_size(parameters.selection, state.mesh)),
+      m_partition(state.mesh,
+                  on_surface_patch_size(parameters.selection, state.mesh),
+                  largest_patch_size(parameters.selection)),
+      m_small_partition(state.mesh,
+                        small_patch_size(parameters.selection, state.mesh),
+                        largest_patch_size(parameters.selection)),
       m_rounds(state.mesh, parameters.halo),
       m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
   {}

@@ -51,7 +51,7 @@ struct Flattening_parameters
   double conformal_limit = 20;        // distortion of a conformal map beyond which it is no start
   // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
   // accurate: descent follows, until the distortion is below this.
-  double nearly_isometric = 4.1;
+  double nearly_isometric = 4.05;
   int maximum_descent_steps = 25;
   double descent_tolerance = 1e-2; // a relative decrease that ends the descent
   // the same as long as the distortion is above `far_distortion`: folds open up slowly at first

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,14 @@ namespace internal {
 class Patch_partition
 {
 public:
-  Patch_partition(const Indexed_mesh& mesh, int size) : m_mesh(mesh), m_size(size) {}
+  // patches of about `size` faces, and none of more than `largest`
+  Patch_partition(const Indexed_mesh& mesh,
+                  int size,
+                  int largest = (std::numeric_limits<int>::max)())
+    : m_mesh(mesh),
+      m_size(size),
+      m_largest(largest)
+  {}
 
   int patch_size() const { return m_size; }
   void set_patch_size(int size) { m_size = size; }
@@ -56,8 +64,8 @@ public:
   }
 
 private:
-  // gives all wanted faces to cells that grow from the seeds, and from further ones where no way
-  // leads; m_queue holds them in the order in which they were reached. Returns the number of cells.
+  // gives all wanted faces to cells that grow from the seeds, and from further ones where none of these
+  // leads or may lead; m_queue holds them in the order in which they were reached. Returns the number of cells.
   int grow(const std::vector<int>& wanted,
            const std::vector<char>& is_wanted,
            const std::vector<int>& seeds)
@@ -65,8 +73,10 @@ private:
     m_cell.assign(m_mesh.number_of_faces(), -1);
     m_queue.clear();
     int cells = 0;
+    m_count.assign(seeds.size(), 0);
     const auto take = [&](int f, int cell) {
       m_cell[f] = cell;
+      ++m_count[cell];
       m_queue.push_back(f);
     };
     for(const int f : seeds)
@@ -80,12 +90,16 @@ private:
         for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         {
           const int o = m_mesh.opposite[c];
-          if(o >= 0 && is_wanted[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0)
+          if(o >= 0 && is_wanted[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0 &&
+             m_count[m_cell[f]] < m_largest)
             take(m_mesh.corner_face[o], m_cell[f]);
         }
       }
       if(m_cell[start] < 0)
+      {
+        m_count.push_back(0);
         take(start, cells++);
+      }
     }
     return cells;
   }
@@ -130,8 +144,9 @@ private:
   }
 
   const Indexed_mesh& m_mesh;
-  int m_size;
+  int m_size, m_largest;
   std::vector<int> m_cell, m_queue;
+  std::vector<int> m_count; // per cell: its faces
 };
 
 } // namespace internal
