@@ -95,13 +95,14 @@ public:
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around(mesh, m_state.is_free, 0);
+    m_prizes_angles = prizes_angles(m_state.elements);
 
     m_result.status = Status::iteration_limit;
     if(!iterate_to_convergence(before))
       return;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(revisits && revisit_worst() && m_parameters.use_finishing_stage &&
-       m_parameters.use_on_surface_steps && prizes_angles(m_state.elements))
+       m_parameters.use_on_surface_steps && m_prizes_angles)
       finish_angles();
   }
 
@@ -170,7 +171,8 @@ private:
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection);
     const Indexed_mesh& mesh = m_state.mesh;
-    const int smallest_region = 20;
+    // sharp triangles are a matter of their vertices, stretched ones of what is around them
+    const int smallest_region = m_prizes_angles ? 20 : 1;
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     const std::vector<char> is_bad =
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
@@ -420,6 +422,7 @@ private:
   double m_taken = 0, m_could_move = 0; // in this iteration on the surface: of whole steps
   bool m_has_refused = false;
   bool m_is_finishing = false;
+  bool m_prizes_angles = false;
   double m_cap = 0;
   double m_rest_energy = 0;
 };
