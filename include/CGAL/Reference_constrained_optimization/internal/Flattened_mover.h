@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
 #include <CGAL/Reference_constrained_optimization/internal/sliding.h>
+#include <CGAL/Reference_constrained_optimization/internal/tangent_frame.h>
 
 #include <chrono>
 #include <cmath>
@@ -65,6 +66,7 @@ public:
       return false;
 
     const auto start_of_descent = std::chrono::steady_clock::now();
+    m_problem.carriers = drift_carriers(patch);
     m_start_triangle.assign(m_flattening.positions.size(), -1);
     for(int c = 0; c < triangles.number_of_corners(); ++c)
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
@@ -144,6 +146,45 @@ private:
         Planar_problem::edges(u, e.vertices),
         signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
     }
+    find_motions(patch);
+    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_motions[v]; });
+  }
+
+  // How vertices move along R when they move in the plane: the mean of the triangles around them, in
+  // the tangent plane of R.
+  void find_motions(const Patch& patch)
+  {
+    if(patch.samples.empty())
+      return;
+    const Indexed_mesh& triangles = patch.triangles();
+    const std::vector<Vector_2>& u = m_flattening.positions;
+    m_motions.assign(u.size(), Tangent_frame::Zero());
+    std::vector<int> count(u.size(), 0);
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+    {
+      const int* v = &triangles.corner_vertex[3 * t];
+      const Eigen::Matrix2d flat = Planar_problem::edges(u, {{v[0], v[1], v[2]}});
+      if(!(flat.determinant() > 1e-3 * flat.squaredNorm()))
+        continue;
+      Tangent_frame edges;
+      edges << patch.placed[v[1]].position - patch.placed[v[0]].position,
+        patch.placed[v[2]].position - patch.placed[v[0]].position;
+      const Tangent_frame motion = edges * flat.inverse();
+      for(int i = 0; i < 3; ++i)
+      {
+        m_motions[v[i]] += motion;
+        ++count[v[i]];
+      }
+    }
+    for(int v = 0; v < int(u.size()); ++v)
+      if(patch.slides(v))
+        m_motions[v] = m_slide_scale[v] * patch.lines->tangent(patch.placed[v].on_line) *
+                       m_problem.slide_direction[v].transpose();
+      else if(count[v] > 0)
+      {
+        const Vector_3 normal = patch.placed[v].normal.normalized();
+        m_motions[v] = (m_motions[v] - normal * (normal.transpose() * m_motions[v])) / count[v];
+      }
   }
 
   // In the plane a vertex slides in parallel to the line between its two neighbours; one unit there
@@ -185,6 +226,7 @@ private:
   std::vector<Vector_2> m_target;
   std::vector<int> m_start_triangle;
   std::vector<double> m_slide_scale;
+  std::vector<Tangent_frame> m_motions; // per vertex
   bool m_overlaps = false;
   double m_flattening_time = 0, m_optimization_time = 0;
 };

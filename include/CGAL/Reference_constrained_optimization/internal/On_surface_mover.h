@@ -34,6 +34,8 @@ struct Tangent_problem
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
   std::vector<char> is_free; // per vertex
+  std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
+  Drift_terms drift;
 
   std::vector<Eigen::Matrix2d> shapes;      // at u = 0
   std::vector<Eigen::Matrix2d> corner_maps; // three per element
@@ -88,6 +90,7 @@ public:
       m_problem.triples.push_back(e.vertices);
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
+    m_problem.carriers = drift_carriers(patch);
     m_newton.analyze(m_problem);
     m_strain_resistance = m_first_resistance;
     const bool proposes = step(patch, density);
@@ -163,6 +166,7 @@ private:
       for(int i = 0; i < 3; ++i)
         m_problem.corner_maps[3 * e + i] =
           m_planes[e].transpose() * m_frames[patch.elements[e].vertices[i]];
+    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_frames[v]; });
   }
 
   // the planes of the elements, and their shapes there

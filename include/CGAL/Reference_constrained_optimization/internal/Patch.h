@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_barrier.h>
 
 #include <array>
 #include <utility>
@@ -46,12 +47,35 @@ struct Patch
   Indexed_mesh split;
   std::vector<int> split_polygon, first_triangle;
 
+  // The samples of the drift barrier; none if it is off. Directions are unit vectors from R to the
+  // mesh, known where the barrier is felt.
+  Drift_barrier barrier;
+  double drift_bound = 0;
+  std::vector<double> drift_bounds; // per polygon, if any is beyond the bound from the start
+  double bound_of_triangle(int t) const
+  {
+    return drift_bounds.empty() ? drift_bound : drift_bounds[polygon_of(t)];
+  }
+
+  // a point of the mesh, see drift_samples.h
+  struct Sample
+  {
+    int face = -1; // of R, where its closest point is
+    double distance = 0;
+    Vector_3 direction = Vector_3::Zero();
+  };
+  std::vector<Sample> samples;
+
   // a vertex of R whose closest point of the mesh is in the patch
   struct Guest
   {
     int vertex;      // of R
     int polygon;     // local face that holds its closest point
     double distance; // to it
+    double bound;
+    int triangle = -1; // local
+    Vector_3 barycentric = Vector_3::Zero();
+    Vector_3 direction = Vector_3::Zero();
   };
   std::vector<Guest> guests;
 };

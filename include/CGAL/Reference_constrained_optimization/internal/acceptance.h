@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
 #include <algorithm>
@@ -21,9 +21,14 @@ namespace internal {
 struct Patch_measure
 {
   double energy = 0;
+  double drift_energy = 0; // what the drift barrier adds
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
+  bool has_fallen_from(const Patch_measure& before) const
+  {
+    return energy < before.energy && energy + drift_energy < before.energy + before.drift_energy;
+  }
 };
 
 // Decides on what a mover proposes: first flips, fold edges and non-convex quads, then energy, all
@@ -37,9 +42,7 @@ public:
   {
     double worst = 0;    // no step may take an element beyond it, or further beyond
     double sharpest = 1; // no step may take the cosine of an angle beyond it, or further beyond
-    double drift =
-      0; // no step may take a vertex of R further than this from the mesh, or further yet
-    double bad = 0; // elements beyond it are allowed more drift
+    double bad = 0;      // elements beyond it are bad
     // elements with a density or a cosine of an angle beyond these are what a search is for
     double searched = 0, sharp = 1;
     double strain_resistance = 0; // where Newton steps on the surface begin
@@ -77,10 +80,11 @@ public:
     }
     m_after = m_before;
     forget_offenders();
-    mark_bad(patch);
     m_steps.start(patch);
     m_candidate = patch.placed;
+    m_samples = patch.samples;
     m_guests = patch.guests;
+    decision.before.drift_energy = drift_energy(patch);
 
     const int maximum_attempts = 20, local_attempts = 16;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
@@ -88,10 +92,12 @@ public:
       place(patch, mover);
       measure(patch, density, m_candidate, m_after);
       decision.after = sum_up(patch, m_after);
+      visit_samples(patch, state.reference);
       visit_guests(patch, state.reference);
+      decision.after.drift_energy = drift_energy(patch);
       const bool exceeds = find_offenders(patch);
       const int defects = decision.after.defects() - decision.before.defects();
-      const bool falls = decision.after.energy < decision.before.energy;
+      const bool falls = decision.after.has_fallen_from(decision.before);
       if(m_limits.accepts_all || (!exceeds && (defects < 0 || (defects == 0 && falls))))
       {
         decision.accepted = true;
@@ -114,6 +120,7 @@ public:
   // what was accepted, and the part of its way that each vertex went
   const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
   const std::vector<double>& steps() const { return m_steps.parts(); }
+  const std::vector<Patch::Sample>& samples() const { return m_samples; }
   const std::vector<Patch::Guest>& guests() const { return m_guests; }
 
 private:
@@ -159,7 +166,6 @@ private:
     const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
     for(const int f : m_changed)
     {
-      m_is_changed[f] = 0;
       details.normals[f] = face_normal(mesh, vertex, f);
       details.flipped[f] =
         char(is_flipped(mesh, vertex, f, details.normals[f]) + is_nonconvex(mesh, vertex, f));
@@ -195,20 +201,13 @@ private:
     return m;
   }
 
-  void mark_bad(const Patch& patch)
-  {
-    m_is_bad.assign(patch.vertices.size(), 0);
-    for(std::size_t e = 0; e < patch.elements.size(); ++e)
-      if(m_before.densities[e] > m_limits.bad)
-        for(const int v : patch.elements[e].vertices)
-          m_is_bad[v] = 1;
-  }
-
   // takes the vertices whose steps are new to where they lead, and notes the faces that change
   template <typename Mover>
   void place(const Patch& patch, Mover& mover)
   {
     const Indexed_mesh& mesh = patch.polygons;
+    for(const int f : m_changed)
+      m_is_changed[f] = 0;
     m_changed.clear();
     m_steps.settle(patch, mover, [&](int v, double step) {
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
@@ -228,28 +227,75 @@ private:
     });
   }
 
-  // Looks where the vertices of R that are guests of the patch find it now; faces of the mesh that
-  // are all on R may still have cut off what is between them.
+  // Looks how far the samples of changed faces are from R. None is further away than before by more
+  // than its way: as long as that is no matter it is good enough.
+  void visit_samples(const Patch& patch, const Reference_surface& reference)
+  {
+    if(m_samples.empty())
+      return;
+    const Indexed_mesh& triangles = patch.triangles();
+    const auto before = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
+    const auto now = [&](int v) -> const Placed_vertex& { return m_candidate[v]; };
+    for(const int f : m_changed)
+      for(int t = patch.triangle_of(f);
+          t < triangles.number_of_faces() && patch.polygon_of(t) == f; ++t)
+        for(int i = 0; i < 4; ++i)
+        {
+          const int s = sample_of(patch, t, i);
+          if(s < 0 || (s != 4 * t + i && m_is_changed[patch.polygon_of(s / 4)]))
+            continue; // it is the other triangle's
+          Patch::Sample& sample = m_samples[s];
+          const Vector_3 barycentric = sample_barycentric(s % 4);
+          const double way = (triangle_point(triangles, now, s / 4, barycentric) -
+                              triangle_point(triangles, before, s / 4, barycentric))
+                               .norm();
+          sample.distance = patch.samples[s].distance + way;
+          if(Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(s / 4)))
+            locate_sample(patch, reference, now, s, sample);
+        }
+  }
+
+  // looks where the vertices of R that are guests of the patch find it now
   void visit_guests(const Patch& patch, const Reference_surface& reference)
   {
     if(m_guests.empty())
       return;
+    const Indexed_mesh& mesh = patch.polygons;
+    const auto now = [&](int v) -> const Placed_vertex& { return m_candidate[v]; };
     // a descent looks at the faces around the one where it begins, too
     m_is_near.assign(patch.vertices.size(), 0);
     for(const int f : m_changed)
-      for(int c = patch.polygons.face_begin[f]; c < patch.polygons.face_begin[f + 1]; ++c)
-        m_is_near[patch.polygons.corner_vertex[c]] = 1;
-    const auto point = [&](int v) -> const Vector_3& { return m_candidate[v].position; };
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        m_is_near[mesh.corner_vertex[c]] = 1;
     for(std::size_t i = 0; i < m_guests.size(); ++i)
     {
-      Patch::Guest& guest = m_guests[i];
-      if(!has_marked(patch.polygons, guest.polygon, m_is_near))
+      if(!has_marked(mesh, m_guests[i].polygon, m_is_near))
         continue;
-      const Foot foot = descend_to(patch.triangles(), point, reference.points()[guest.vertex],
-                                   patch.triangle_of(guest.polygon));
-      guest.polygon = patch.polygon_of(foot.face);
-      guest.distance = std::sqrt(foot.squared_distance);
+      const Patch::Guest& guest = patch.guests[i];
+      double way = 0;
+      for(int c = mesh.face_begin[guest.polygon]; c < mesh.face_begin[guest.polygon + 1]; ++c)
+      {
+        const int v = mesh.corner_vertex[c];
+        way = (std::max)(way, (m_candidate[v].position - patch.placed[v].position).norm());
+      }
+      if(Drift_barrier::is_felt(guest.distance + way, guest.bound))
+        locate_guest(patch, reference, now, m_guests[i]);
+      else
+      {
+        m_guests[i] = guest;
+        m_guests[i].distance += way;
+      }
     }
+  }
+
+  double drift_energy(const Patch& patch) const
+  {
+    double sum = 0;
+    for(int s = 0; s < int(m_samples.size()); ++s)
+      sum += patch.barrier.value(m_samples[s].distance, patch.bound_of_triangle(s / 4));
+    for(const Patch::Guest& guest : m_guests)
+      sum += patch.barrier.value(guest.distance, guest.bound);
+    return sum;
   }
 
   // finds what is worse than it may be; returns whether a limit is exceeded
@@ -277,12 +323,19 @@ private:
         add_element(patch, e);
       }
     }
+    for(std::size_t s = 0; s < m_samples.size(); ++s)
+    {
+      const double distance = m_samples[s].distance;
+      if(distance > patch.samples[s].distance && distance > patch.bound_of_triangle(int(s / 4)))
+      {
+        exceeds = true;
+        add_triangle(patch, int(s / 4));
+      }
+    }
     for(std::size_t i = 0; i < m_guests.size(); ++i)
     {
-      // held at the bound, bad elements would stay bad: a fifth of it is reserved for them
       const Patch::Guest& guest = m_guests[i];
-      const double bound = (has_marked(mesh, guest.polygon, m_is_bad) ? 1. : 0.8) * m_limits.drift;
-      if(guest.distance > bound && guest.distance > patch.guests[i].distance)
+      if(guest.distance > guest.bound && guest.distance > patch.guests[i].distance)
       {
         exceeds = true;
         add_face(mesh, guest.polygon);
@@ -301,6 +354,17 @@ private:
       if(after > 1.5 * before || after > before + much)
         add_element(patch, e);
     }
+    const auto rises = [&](double distance, double before, double bound) {
+      return distance > before &&
+             patch.barrier.value(distance, bound) > patch.barrier.value(before, bound) + much;
+    };
+    for(std::size_t s = 0; s < m_samples.size(); ++s)
+      if(rises(m_samples[s].distance, patch.samples[s].distance,
+               patch.bound_of_triangle(int(s / 4))))
+        add_triangle(patch, int(s / 4));
+    for(std::size_t i = 0; i < m_guests.size(); ++i)
+      if(rises(m_guests[i].distance, patch.guests[i].distance, m_guests[i].bound))
+        add_face(patch.polygons, m_guests[i].polygon);
   }
 
   void add(int v)
@@ -315,6 +379,11 @@ private:
   {
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       add(mesh.corner_vertex[c]);
+  }
+  void add_triangle(const Patch& patch, int t)
+  {
+    for(int k = 0; k < 3; ++k)
+      add(patch.triangles().corner_vertex[3 * t + k]);
   }
   void add_element(const Patch& patch, std::size_t e)
   {
@@ -359,12 +428,13 @@ private:
   Limits m_limits;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;
+  std::vector<Patch::Sample> m_samples;
   std::vector<Patch::Guest> m_guests;
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
   std::vector<int> m_changed; // faces to be measured
-  std::vector<char> m_is_changed, m_is_bad, m_is_near, m_is_offender;
+  std::vector<char> m_is_changed, m_is_near, m_is_offender;
   std::vector<int> m_offenders; // vertices
 };
 

@@ -5,10 +5,13 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_GUARD_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_GUARD_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
+#include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -16,66 +19,96 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Which face of the mesh every vertex of R is closest to. Vertices of the mesh on R do not keep its
-// faces from cutting R's features off; that is seen from R's side only. A patch takes the guests of
-// its faces along, the acceptance test looks after them, and they return with the accepted patch.
+// How far mesh and reference are apart, both ways: at the middles of the mesh's edges and triangles,
+// and at the vertices of R. Vertices of the mesh on R do not keep its faces from leaving R, nor from
+// cutting R's features off. A patch takes its samples, and the vertices of R that are guests of its
+// faces, along; the acceptance test looks after them, and they return with the accepted patch.
+//
+// What is beyond the bound on input has its own distance as its bound.
 class Drift_guard
 {
 public:
-  void initialize(const Optimization_state& state)
+  bool is_on() const { return !m_first.empty(); }
+
+  // the bound must be finite
+  template <typename ConcurrencyTag>
+  void initialize(const Optimization_state& state, double bound, const Drift_barrier& barrier)
   {
-    const Indexed_mesh& mesh = state.mesh;
-    const Indexed_mesh& reference = state.reference.mesh();
-    m_first.assign(mesh.number_of_faces(), -1);
-    m_next.assign(reference.number_of_vertices(), -1);
-    m_distance.assign(reference.number_of_vertices(), 0);
-    Mesh_copy copy;
-    for(const Placed_vertex& v : state.vertices)
-      copy.points.push_back(v.position);
-    const Point_index index(copy.points,
-                            [&](int v) { return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1]; });
-    std::unique_ptr<Reference_surface> surface; // of the mesh, where vertices are not enough
-    for(int r = 0; r < reference.number_of_vertices(); ++r)
-    {
-      if(reference.vertex_begin[r] == reference.vertex_begin[r + 1])
-        continue;
-      const Vector_3& p = state.reference.points()[r];
-      const int twin = index.find(p);
-      if(twin >= 0)
-      {
-        settle(r, mesh.corner_face[mesh.vertex_corners[mesh.vertex_begin[twin]]], 0);
-        continue;
-      }
-      if(!surface)
-      {
-        copy.mesh = mesh;
-        surface = std::make_unique<Reference_surface>(copy);
-      }
-      const Surface_point foot = surface->closest(p);
-      settle(r, surface->original_face(foot.face), (foot.position - p).norm());
-    }
+    m_barrier = barrier;
+    m_bound = bound;
+    welcome_guests<ConcurrencyTag>(state);
+    measure_samples<ConcurrencyTag>(state);
   }
 
-  void invite(Patch& patch) const
+  // the largest distance of a sample when the guard was initialized
+  double initial_drift() const { return m_initial_drift; }
+
+  void invite(const Optimization_state& state, Patch& patch) const
   {
-    if(m_first.empty())
+    if(!is_on())
       return;
+    patch.barrier = m_barrier;
+    patch.drift_bound = m_bound;
+    if(!m_face_bounds.empty())
+      for(const int f : patch.faces)
+        patch.drift_bounds.push_back(m_face_bounds[f]);
+    const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
+
+    const int n = patch.triangles().number_of_faces();
+    patch.samples.resize(4 * n);
+    for(int t = 0; t < n; ++t)
+      for(int i = 0; i < 4; ++i)
+      {
+        const int s = sample_of(patch, t, i);
+        if(s != 4 * t + i)
+          continue;
+        Patch::Sample& sample = patch.samples[s];
+        if(!patch.is_split)
+        {
+          const Known& known = m_known[known_sample(state.mesh, patch, s)];
+          sample.face = known.face;
+          sample.distance = known.distance;
+        }
+        if(patch.is_split || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
+          locate_sample(patch, state.reference, vertex, s, sample);
+      }
+
     for(std::size_t f = 0; f < patch.faces.size(); ++f)
       for(int r = m_first[patch.faces[f]]; r >= 0; r = m_next[r])
-        patch.guests.push_back({r, int(f), m_distance[r]});
+      {
+        patch.guests.push_back(
+          {r, int(f), m_distance[r], m_vertex_bounds.empty() ? m_bound : m_vertex_bounds[r]});
+        Patch::Guest& guest = patch.guests.back();
+        if(Drift_barrier::is_felt(guest.distance, guest.bound))
+          locate_guest(patch, state.reference, vertex, guest);
+      }
   }
 
-  void take_back(const Patch& patch)
+  void take_back(const Indexed_mesh& mesh, const Patch& patch)
   {
-    if(m_first.empty())
+    if(!is_on())
       return;
     for(const int f : patch.faces)
       m_first[f] = -1;
     for(const Patch::Guest& g : patch.guests)
       settle(g.vertex, patch.faces[g.polygon], g.distance);
+    if(!patch.is_split)
+      for(int t = 0; t < patch.triangles().number_of_faces(); ++t)
+        for(int i = 0; i < 4; ++i)
+          if(sample_of(patch, t, i) == 4 * t + i)
+          {
+            const Patch::Sample& sample = patch.samples[4 * t + i];
+            m_known[known_sample(mesh, patch, 4 * t + i)] = {sample.face, sample.distance};
+          }
   }
 
 private:
+  struct Known
+  {
+    int face;
+    double distance;
+  };
+
   void settle(int r, int face, double distance)
   {
     m_distance[r] = distance;
@@ -83,6 +116,124 @@ private:
     m_first[face] = r;
   }
 
+  // the two triangles of an edge share its sample
+  static int known_sample(const Indexed_mesh& mesh, const Patch& patch, int s)
+  {
+    const int f = patch.faces[s / 4], i = s % 4;
+    if(i == 3)
+      return 4 * f + 3;
+    const int c = 3 * f + i, o = mesh.opposite[c];
+    return o >= 0 && o < c ? 4 * (o / 3) + o % 3 : 4 * f + i;
+  }
+
+  template <typename ConcurrencyTag>
+  void welcome_guests(const Optimization_state& state)
+  {
+    const Indexed_mesh& mesh = state.mesh;
+    const Indexed_mesh& reference = state.reference.mesh();
+    const int n = reference.number_of_vertices();
+    m_first.assign(mesh.number_of_faces(), -1);
+    m_next.assign(n, -1);
+    m_distance.assign(n, 0);
+    Mesh_copy copy;
+    for(const Placed_vertex& v : state.vertices)
+      copy.points.push_back(v.position);
+    const Point_index index(copy.points,
+                            [&](int v) { return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1]; });
+    std::vector<int> face(n, -1);
+    bool all_are_twins = true;
+    for(int r = 0; r < n; ++r)
+    {
+      const int twin = reference.vertex_begin[r] == reference.vertex_begin[r + 1]
+                         ? -1
+                         : index.find(state.reference.points()[r]);
+      if(twin >= 0)
+        face[r] = mesh.corner_face[mesh.vertex_corners[mesh.vertex_begin[twin]]];
+      else
+        all_are_twins = false;
+    }
+    if(!all_are_twins)
+    {
+      copy.mesh = mesh;
+      const Reference_surface surface(copy);
+      for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+        for(int r = begin; r < end; ++r)
+          if(face[r] < 0 && reference.vertex_begin[r] < reference.vertex_begin[r + 1])
+          {
+            const Vector_3& p = state.reference.points()[r];
+            const Surface_point foot = surface.closest(p);
+            face[r] = surface.original_face(foot.face);
+            m_distance[r] = (foot.position - p).norm();
+          }
+      });
+    }
+    for(int r = 0; r < n; ++r)
+      if(face[r] >= 0)
+        settle(r, face[r], m_distance[r]);
+    m_initial_drift = *std::max_element(m_distance.begin(), m_distance.end());
+    if(m_initial_drift > m_bound)
+      for(int r = 0; r < n; ++r)
+        m_vertex_bounds.push_back((std::max)(m_bound, m_distance[r]));
+  }
+
+  template <typename ConcurrencyTag>
+  void measure_samples(const Optimization_state& state)
+  {
+    const Indexed_mesh& mesh = state.mesh;
+    const int n = mesh.number_of_faces();
+    const bool is_split = mesh.number_of_corners() != 3 * n;
+    if(!is_split)
+      m_known.assign(4 * std::size_t(n), {-1, 0.});
+    std::vector<double> largest(n, 0);
+    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+      for(int f = begin; f < end; ++f)
+      {
+        if(is_face_of_reference(state, f))
+          continue;
+        // as a fan: a quad is split this way or that
+        const int first = mesh.face_begin[f];
+        for(int c = first + 1; c + 1 < mesh.face_begin[f + 1]; ++c)
+          for(int i = 0; i < 4; ++i)
+          {
+            const int corners[3] = {first, c, c + 1};
+            Vector_3 p = Vector_3::Zero();
+            for(int k = 0; k < 3; ++k)
+              p += sample_barycentric(i)(k) * state.vertices[mesh.corner_vertex[corners[k]]].position;
+            const int face =
+              state.vertices[mesh.corner_vertex[corners[i % 3]]].on_reference.face;
+            const Surface_point foot = state.reference.descend(p, face);
+            const double distance = (foot.position - p).norm();
+            largest[f] = (std::max)(largest[f], distance);
+            if(!is_split)
+              m_known[4 * std::size_t(f) + i] = {foot.face, distance};
+          }
+      }
+    });
+    const double most = *std::max_element(largest.begin(), largest.end());
+    m_initial_drift = (std::max)(m_initial_drift, most);
+    if(most > m_bound)
+      for(int f = 0; f < n; ++f)
+        m_face_bounds.push_back((std::max)(m_bound, largest[f]));
+  }
+
+  // where a mesh is its own reference there is nothing to look for
+  static bool is_face_of_reference(const Optimization_state& state, int f)
+  {
+    const Indexed_mesh& reference = state.reference.mesh();
+    if(state.mesh.degree(f) != 3 || f >= reference.number_of_faces())
+      return false;
+    for(int i = 0; i < 3; ++i)
+      if(state.reference.corner_point(f, i) !=
+         state.vertices[state.mesh.corner_vertex[state.mesh.face_begin[f] + i]].position)
+        return false;
+    return true;
+  }
+
+  Drift_barrier m_barrier;
+  double m_bound = 0, m_initial_drift = 0;
+  std::vector<double> m_face_bounds;   // per face of the mesh; empty if all are the bound
+  std::vector<double> m_vertex_bounds; // per vertex of R; empty if all are the bound
+  std::vector<Known> m_known; // four per face of a triangle mesh; no less than the true distance
   // the guests of every face are a list: the first one, and the next one after each vertex of R
   std::vector<int> m_first, m_next;
   std::vector<double> m_distance; // per vertex of R

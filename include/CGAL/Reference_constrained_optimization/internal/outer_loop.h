@@ -68,6 +68,7 @@ public:
   void run()
   {
     const Indexed_mesh& mesh = m_state.mesh;
+    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
     Global_measure before =
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
@@ -86,12 +87,15 @@ public:
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
     // a mesh that is coarser than R is further away from it by nature
-    m_limits.drift =
+    const double drift_bound =
       m_parameters.drift_bound < 0
-        ? 1.2 * (std::max)(m_state.reference.mean_edge_length(), mean_edge_length(mesh, points))
+        ? 0.25 * (std::max)(m_state.reference.mean_edge_length(), mean_edge_length(mesh, points))
         : m_parameters.drift_bound;
-    if(std::isfinite(m_limits.drift))
-      m_drift_guard.initialize(m_state);
+    const double drift_weight = 0.1;
+    if(std::isfinite(drift_bound))
+      m_drift_guard.initialize<ConcurrencyTag>(
+        m_state, (std::max)(drift_bound, 1e-6 * m_state.reference.mean_edge_length()),
+        Drift_barrier(drift_weight * m_rest_energy / triangles));
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around(mesh, m_state.is_free, 0);
@@ -365,7 +369,7 @@ private:
     for(const int f : patch.faces)
       m_geometry.set(m_state.mesh, f,
                      [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(patch);
+    m_drift_guard.take_back(m_state.mesh, patch);
   }
 
   void report(const Solved_patch& s)

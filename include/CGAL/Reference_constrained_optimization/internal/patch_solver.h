@@ -70,7 +70,7 @@ public:
     if(s.patch.number_of_free_vertices == 0)
       return;
     s.was_tried = true;
-    drift_guard.invite(s.patch);
+    drift_guard.invite(state, s.patch);
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
@@ -118,6 +118,7 @@ private:
       {
         s.decision.after = decision.after;
         s.patch.placed = m_acceptance.candidate();
+        s.patch.samples = m_acceptance.samples();
         s.patch.guests = m_acceptance.guests();
         s.taken = mean_part(s.patch, m_acceptance.steps());
       }

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PROJECTED_NEWTON_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Newton_system.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_terms.h>
 #include <CGAL/Reference_constrained_optimization/internal/flip_free_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_derivatives.h>
 
@@ -29,7 +30,8 @@ namespace internal {
 //
 // A problem has `triples` (elements), `rest_inverse`, `is_free` (per vertex), `shape(e, u)`, the edge
 // matrix of element e for coordinates u, and `corner_map(e, i)`, the matrix by which the i-th vertex
-// of element e moves when its coordinates do.
+// of element e moves when its coordinates do. A drift barrier is added to the energy: `drift`, a
+// Drift_terms, in triangles of the vertices `carriers`.
 class Projected_newton
 {
 public:
@@ -49,8 +51,12 @@ public:
     for(std::size_t i = 0; i < problem.is_free.size(); ++i)
       if(problem.is_free[i])
         m_variable[i] = m_size++;
+    // the same triangles need no entries of their own
+    const bool is_shared = problem.carriers.empty() || problem.carriers == problem.triples;
+    m_first_carrier = is_shared ? 0 : int(problem.triples.size());
     if(m_size > 0)
-      m_system.analyze(m_variable, m_size, problem.triples);
+      m_system.analyze(m_variable, m_size, problem.triples,
+                       is_shared ? decltype(problem.carriers){} : problem.carriers);
     m_right.resize(2 * m_size);
   }
 
@@ -119,7 +125,20 @@ private:
     double sum = 0;
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
       sum += density.value(problem.shape(e, u) * problem.rest_inverse[e]);
+    for(const Drift_terms::Term& term : problem.drift.terms())
+      sum += problem.drift.barrier().value(distance(problem, term, u), term.bound);
     return sum;
+  }
+
+  template <typename Problem>
+  static double
+  distance(const Problem& problem, const Drift_terms::Term& term, const std::vector<Vector_2>& u)
+  {
+    const std::array<int, 3>& t = problem.carriers[term.triangle];
+    double d = term.distance;
+    for(int k = 0; k < 3; ++k)
+      d += term.rows[k].dot(u[t[k]]);
+    return d;
   }
 
   // matrix and right-hand side (the negative gradient) at u; returns the energy
@@ -174,6 +193,33 @@ private:
       }
     }
     m_scale = least * double(problem.triples.size());
+    return sum + add_drift(problem, u);
+  }
+
+  // Gauss and Newton's Hessian; returns the energy
+  template <typename Problem>
+  double add_drift(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    double sum = 0;
+    for(const Drift_terms::Term& term : problem.drift.terms())
+    {
+      const double r = distance(problem, term, u), side = r < 0 ? -1 : 1;
+      const Drift_barrier::Derivatives d =
+        problem.drift.barrier().derivatives(side * r, term.bound);
+      sum += d.value;
+      const std::array<int, 3>& t = problem.carriers[term.triangle];
+      for(int j = 0; j < 3; ++j)
+      {
+        const int i = (j + 2) % 3, a = m_variable[t[i]], b = m_variable[t[j]];
+        if(b < 0)
+          continue;
+        m_right.segment<2>(2 * b) -= side * d.first * term.rows[j];
+        m_system.add_diagonal(b, d.second * term.rows[j] * term.rows[j].transpose());
+        if(a >= 0)
+          m_system.add_side(m_first_carrier + term.triangle, i, a, b,
+                            d.second * term.rows[i] * term.rows[j].transpose());
+      }
+    }
     return sum;
   }
 
@@ -241,6 +287,7 @@ private:
   }
 
   int m_size = 0;
+  int m_first_carrier = 0; // number of the first carrier in the system
   double m_strain_resistance = 0;
   double m_scale = 0; // of the energy, for tolerances
   Newton_system m_system;

@@ -1,0 +1,107 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_SAMPLES_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_SAMPLES_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+
+#include <cmath>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Where a mesh leaves R is seen at the middles of its edges and triangles, and from R's vertices.
+// Triangle t has the samples 4 t + i: the middle of its edge i for i < 3 (held by one of the two
+// triangles of an edge), its own for i = 3.
+
+inline Vector_3 sample_barycentric(int i)
+{
+  if(i == 3)
+    return Vector_3::Constant(1. / 3);
+  Vector_3 b = Vector_3::Constant(0.5);
+  b((i + 2) % 3) = 0;
+  return b;
+}
+
+// the sample that an edge or a triangle of the patch has; -1 if none of its vertices may move
+inline int sample_of(const Patch& patch, int t, int i)
+{
+  const Indexed_mesh& mesh = patch.triangles();
+  const int begin = mesh.face_begin[t];
+  const auto is_free = [&](int k) { return patch.is_free[mesh.corner_vertex[begin + k % 3]]; };
+  if(i == 3)
+    return is_free(0) || is_free(1) || is_free(2) ? 4 * t + 3 : -1;
+  if(!is_free(i) && !is_free(i + 1))
+    return -1;
+  const int o = mesh.opposite[begin + i];
+  return o >= 0 && o < begin + i ? 4 * (o / 3) + o % 3 : 4 * t + i;
+}
+
+template <typename VertexAccess>
+Vector_3 triangle_point(const Indexed_mesh& mesh,
+                        const VertexAccess& vertex,
+                        int t,
+                        const Vector_3& barycentric)
+{
+  Vector_3 p = Vector_3::Zero();
+  for(int k = 0; k < 3; ++k)
+    p += barycentric(k) * vertex(mesh.corner_vertex[mesh.face_begin[t] + k]).position;
+  return p;
+}
+
+// Looks for the closest point of R, from where it was last. A sample is no further away than it was
+// before plus its way: where that is little, it is not looked for.
+template <typename VertexAccess>
+void locate_sample(const Patch& patch,
+                   const Reference_surface& reference,
+                   const VertexAccess& vertex,
+                   int s,
+                   Patch::Sample& sample)
+{
+  const Indexed_mesh& mesh = patch.triangles();
+  const int* corners = &mesh.corner_vertex[mesh.face_begin[s / 4]];
+  const int f = vertex(corners[s % 4 % 3]).on_reference.face;
+  if(f == vertex(corners[(s % 4 + 1) % 3]).on_reference.face &&
+     (s % 4 < 3 || f == vertex(corners[2]).on_reference.face))
+  {
+    sample.face = f;
+    sample.distance = 0;
+    return;
+  }
+  const Vector_3 p = triangle_point(mesh, vertex, s / 4, sample_barycentric(s % 4));
+  const Surface_point foot = reference.descend(p, sample.face >= 0 ? sample.face : f);
+  sample.face = foot.face;
+  sample.direction = p - foot.position;
+  sample.distance = sample.direction.norm();
+  if(sample.distance > 0)
+    sample.direction /= sample.distance;
+}
+
+// Looks for the closest point of the patch to a vertex of R, from where it was last.
+template <typename VertexAccess>
+void locate_guest(const Patch& patch,
+                  const Reference_surface& reference,
+                  const VertexAccess& vertex,
+                  Patch::Guest& guest)
+{
+  const Vector_3& p = reference.points()[guest.vertex];
+  const Foot foot = descend_to(
+    patch.triangles(), [&](int v) -> const Vector_3& { return vertex(v).position; }, p,
+    patch.triangle_of(guest.polygon));
+  guest.triangle = foot.face;
+  guest.barycentric = foot.barycentric;
+  guest.polygon = patch.polygon_of(foot.face);
+  guest.direction = foot.position - p;
+  guest.distance = guest.direction.norm();
+  if(guest.distance > 0)
+    guest.direction /= guest.distance;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_SAMPLES_H
