@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_MOVER_H
 
+#include <CGAL/Reference_constrained_optimization/internal/crease_direction.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_towards.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_newton.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
@@ -33,7 +34,7 @@ struct Tangent_problem
 {
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
-  std::vector<char> is_free; // per vertex
+  std::vector<char> is_free;                // per vertex
   std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
   Drift_terms drift;
 
@@ -93,6 +94,7 @@ public:
     m_problem.carriers = drift_carriers(patch);
     m_newton.analyze(m_problem);
     m_strain_resistance = m_first_resistance;
+    m_is_held.assign(patch.vertices.size(), !patch.samples.empty());
     const bool proposes = step(patch, density);
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -104,6 +106,9 @@ public:
   {
     const auto start = std::chrono::steady_clock::now();
     adapt(patch, steps);
+    // what went off its crease without much harm may go on
+    for(std::size_t v = 0; v < steps.size(); ++v)
+      m_is_held[v] = !patch.samples.empty() && steps[v] < 0.5;
     const bool proposes = step(patch, density);
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -157,6 +162,15 @@ private:
         // only R's own planes make the model one of first order; where several meet it is the one
         // that the vertex is about to enter
         const Surface_point& on_reference = patch.placed[v].on_reference;
+        if(m_is_held[v] && patch.is_free[v])
+        {
+          const Vector_3 along = crease_direction(m_reference, on_reference, m_descent[v]);
+          if(!along.isZero(0))
+          {
+            m_frames[v] << along, Vector_3::Zero();
+            continue;
+          }
+        }
         const int face = patch.is_free[v] ? face_towards(m_reference, on_reference, m_descent[v])
                                           : on_reference.face;
         m_frames[v] = tangent_frame(m_reference.face_normal(face));
@@ -230,6 +244,7 @@ private:
   std::vector<Tangent_frame> m_planes; // per element
   std::vector<Vector_3> m_descent;     // per vertex
   std::vector<Vector_2> m_motion;      // per vertex, in its frame
+  std::vector<char> m_is_held;         // per vertex: it stays on the crease of R that it is on
   double m_optimization_time = 0;
 };
 

@@ -21,7 +21,7 @@ namespace internal {
 struct Patch_measure
 {
   double energy = 0;
-  double drift_energy = 0; // what the drift barrier adds
+  double drift_energy = 0;  // what the drift barrier adds
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -81,6 +81,7 @@ public:
     m_after = m_before;
     forget_offenders();
     m_steps.start(patch);
+    m_offences.assign(patch.vertices.size(), 0);
     m_candidate = patch.placed;
     m_samples = patch.samples;
     m_guests = patch.guests;
@@ -95,7 +96,7 @@ public:
       visit_samples(patch, state.reference);
       visit_guests(patch, state.reference);
       decision.after.drift_energy = drift_energy(patch);
-      const bool exceeds = find_offenders(patch);
+      const bool exceeds = find_offenders(patch, decision.before);
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.has_fallen_from(decision.before);
       if(m_limits.accepts_all || (!exceeds && (defects < 0 || (defects == 0 && falls))))
@@ -108,7 +109,7 @@ public:
       if(defects <= 0 && !exceeds)
         find_risen(patch, decision);
       if(!m_offenders.empty() && attempt < local_attempts)
-        cut_offenders(patch, attempt);
+        cut_offenders(patch);
       else
         m_steps.cut_all(patch, 0.5);
       forget_offenders();
@@ -237,8 +238,8 @@ private:
     const auto before = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
     const auto now = [&](int v) -> const Placed_vertex& { return m_candidate[v]; };
     for(const int f : m_changed)
-      for(int t = patch.triangle_of(f);
-          t < triangles.number_of_faces() && patch.polygon_of(t) == f; ++t)
+      for(int t = patch.triangle_of(f); t < triangles.number_of_faces() && patch.polygon_of(t) == f;
+          ++t)
         for(int i = 0; i < 4; ++i)
         {
           const int s = sample_of(patch, t, i);
@@ -299,7 +300,7 @@ private:
   }
 
   // finds what is worse than it may be; returns whether a limit is exceeded
-  bool find_offenders(const Patch& patch)
+  bool find_offenders(const Patch& patch, const Patch_measure& before)
   {
     const Indexed_mesh& mesh = patch.polygons;
     bool exceeds = false;
@@ -323,24 +324,23 @@ private:
         add_element(patch, e);
       }
     }
+    // what the barrier is felt by more than what an element holds is as good as beyond the bound
+    const double much = 0.5 * std::abs(before.energy) / double(patch.elements.size());
+    const auto visit = [&](double distance, double old, double bound) {
+      if(!(distance > old) || !Drift_barrier::is_felt(distance, bound))
+        return false;
+      const bool is_beyond = distance > Drift_barrier::last_part * bound;
+      exceeds = exceeds || is_beyond;
+      return is_beyond ||
+             patch.barrier.value(distance, bound) > patch.barrier.value(old, bound) + much;
+    };
     for(std::size_t s = 0; s < m_samples.size(); ++s)
-    {
-      const double distance = m_samples[s].distance;
-      if(distance > patch.samples[s].distance && distance > patch.bound_of_triangle(int(s / 4)))
-      {
-        exceeds = true;
+      if(visit(m_samples[s].distance, patch.samples[s].distance,
+               patch.bound_of_triangle(int(s / 4))))
         add_triangle(patch, int(s / 4));
-      }
-    }
     for(std::size_t i = 0; i < m_guests.size(); ++i)
-    {
-      const Patch::Guest& guest = m_guests[i];
-      if(guest.distance > guest.bound && guest.distance > patch.guests[i].distance)
-      {
-        exceeds = true;
-        add_face(mesh, guest.polygon);
-      }
-    }
+      if(visit(m_guests[i].distance, patch.guests[i].distance, m_guests[i].bound))
+        add_face(mesh, m_guests[i].polygon);
     return exceeds;
   }
 
@@ -354,17 +354,6 @@ private:
       if(after > 1.5 * before || after > before + much)
         add_element(patch, e);
     }
-    const auto rises = [&](double distance, double before, double bound) {
-      return distance > before &&
-             patch.barrier.value(distance, bound) > patch.barrier.value(before, bound) + much;
-    };
-    for(std::size_t s = 0; s < m_samples.size(); ++s)
-      if(rises(m_samples[s].distance, patch.samples[s].distance,
-               patch.bound_of_triangle(int(s / 4))))
-        add_triangle(patch, int(s / 4));
-    for(std::size_t i = 0; i < m_guests.size(); ++i)
-      if(rises(m_guests[i].distance, patch.guests[i].distance, m_guests[i].bound))
-        add_face(patch.polygons, m_guests[i].polygon);
   }
 
   void add(int v)
@@ -400,22 +389,36 @@ private:
   }
 
   // the offending vertices go back, and after a while their neighbours, too
-  void cut_offenders(const Patch& patch, int attempt)
+  void cut_offenders(const Patch& patch)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    std::size_t begin = 0;
-    for(int ring = 0; ring < attempt / 2; ++ring)
+    m_rings.assign(patch.vertices.size(), 0);
+    for(const int v : m_offenders)
     {
-      const std::size_t end = m_offenders.size();
-      for(; begin < end; ++begin)
+      ++m_offences[v];
+      m_rings[v] = m_offences[v] / 4;
+    }
+    for(std::size_t i = 0; i < m_offenders.size(); ++i)
+    {
+      const int v = m_offenders[i], rings = m_rings[v];
+      m_steps.cut(patch, v, m_offences[v] < 8 ? 0.4 : 0.);
+      if(rings == 0)
+        continue;
+      for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
       {
-        const int v = m_offenders[begin];
-        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-          add_face(mesh, mesh.corner_face[mesh.vertex_corners[k]]);
+        const int f = mesh.corner_face[mesh.vertex_corners[k]];
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        {
+          const int w = mesh.corner_vertex[c];
+          if(!m_is_offender[w])
+          {
+            add(w);
+            m_offences[w] = (std::max)(m_offences[w], m_offences[v] - 1);
+            m_rings[w] = rings - 1;
+          }
+        }
       }
     }
-    for(const int v : m_offenders)
-      m_steps.cut(patch, v, attempt < 3 ? 0.4 : 0.);
   }
 
   void forget_offenders()
@@ -436,6 +439,7 @@ private:
   std::vector<int> m_changed; // faces to be measured
   std::vector<char> m_is_changed, m_is_near, m_is_offender;
   std::vector<int> m_offenders; // vertices
+  std::vector<int> m_offences, m_rings;
 };
 
 } // namespace internal

@@ -198,9 +198,9 @@ private:
             const int corners[3] = {first, c, c + 1};
             Vector_3 p = Vector_3::Zero();
             for(int k = 0; k < 3; ++k)
-              p += sample_barycentric(i)(k) * state.vertices[mesh.corner_vertex[corners[k]]].position;
-            const int face =
-              state.vertices[mesh.corner_vertex[corners[i % 3]]].on_reference.face;
+              p +=
+                sample_barycentric(i)(k) * state.vertices[mesh.corner_vertex[corners[k]]].position;
+            const int face = state.vertices[mesh.corner_vertex[corners[i % 3]]].on_reference.face;
             const Surface_point foot = state.reference.descend(p, face);
             const double distance = (foot.position - p).norm();
             largest[f] = (std::max)(largest[f], distance);

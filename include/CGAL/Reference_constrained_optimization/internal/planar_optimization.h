@@ -25,7 +25,7 @@ struct Planar_problem
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
   std::vector<Eigen::Matrix2d> metric;
-  std::vector<char> is_free; // per vertex
+  std::vector<char> is_free;                // per vertex
   std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
   Drift_terms drift;
   // per vertex: the unit vector along which it slides, zero if it does not; empty if none does

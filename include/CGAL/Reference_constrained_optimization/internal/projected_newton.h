@@ -130,6 +130,7 @@ private:
     return sum;
   }
 
+  // negative beyond the other surface, where the barrier is not felt
   template <typename Problem>
   static double
   distance(const Problem& problem, const Drift_terms::Term& term, const std::vector<Vector_2>& u)
@@ -203,9 +204,8 @@ private:
     double sum = 0;
     for(const Drift_terms::Term& term : problem.drift.terms())
     {
-      const double r = distance(problem, term, u), side = r < 0 ? -1 : 1;
       const Drift_barrier::Derivatives d =
-        problem.drift.barrier().derivatives(side * r, term.bound);
+        problem.drift.barrier().derivatives(distance(problem, term, u), term.bound);
       sum += d.value;
       const std::array<int, 3>& t = problem.carriers[term.triangle];
       for(int j = 0; j < 3; ++j)
@@ -213,7 +213,7 @@ private:
         const int i = (j + 2) % 3, a = m_variable[t[i]], b = m_variable[t[j]];
         if(b < 0)
           continue;
-        m_right.segment<2>(2 * b) -= side * d.first * term.rows[j];
+        m_right.segment<2>(2 * b) -= d.first * term.rows[j];
         m_system.add_diagonal(b, d.second * term.rows[j] * term.rows[j].transpose());
         if(a >= 0)
           m_system.add_side(m_first_carrier + term.triangle, i, a, b,
