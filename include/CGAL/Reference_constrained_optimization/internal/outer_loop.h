@@ -103,7 +103,9 @@ public:
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(revisits && revisit_worst() && m_parameters.use_finishing_stage &&
        m_parameters.use_on_surface_steps && m_prizes_angles)
+    {
       finish_angles();
+    }
   }
 
 private:
@@ -241,22 +243,40 @@ private:
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    std::vector<Placed_vertex> vertices;
     Drift_guard drift_guard;
-    Finishing_stage(m_state).run(
-      [&](const std::vector<char>& is_wanted, const Finishing_stage::Goal& goal, bool searches) {
+    std::vector<std::pair<int, Placed_vertex>> saved; // vertices, before they were in a patch
+    std::vector<char> is_saved(m_state.vertices.size(), 0);
+    const auto forget = [&]() {
+      for(const std::pair<int, Placed_vertex>& v : saved)
+        is_saved[v.first] = 0;
+      saved.clear();
+    };
+    using Stage = Finishing_stage<ConcurrencyTag>;
+    Stage(m_state).run(
+      [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
+        const Indexed_mesh& mesh = m_state.mesh;
+        for(const int f : faces.list)
+          for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          {
+            const int v = mesh.corner_vertex[c];
+            if(!is_saved[v])
+              saved.emplace_back(v, m_state.vertices[v]);
+            is_saved[v] = 1;
+          }
         m_limits.sharpest = goal.sharpest;
         m_limits.sharp = goal.searched;
-        return visit_once(is_wanted, m_small_partition,
+        return visit_once(faces.is_in, m_small_partition,
                           searches ? Moves::by_search : Moves::on_surface,
-                          Angle_barrier_density<Density>(m_density, goal.target));
+                          Angle_barrier_density<Density>(m_density, goal.target), true);
       },
       [&]() {
-        vertices = m_state.vertices;
+        forget();
         drift_guard = m_drift_guard;
       },
       [&]() {
-        m_state.vertices = vertices;
+        for(const std::pair<int, Placed_vertex>& v : saved)
+          m_state.vertices[v.first] = v.second;
+        forget();
         m_drift_guard = drift_guard;
       });
     m_limits = limits;
@@ -297,12 +317,15 @@ private:
   bool visit_once(const std::vector<char>& is_wanted,
                   Patch_partition& partition,
                   Moves moves,
-                  const AnyDensity& density)
+                  const AnyDensity& density,
+                  bool by_regions = false)
   {
     if(!may_go_on())
       return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    const std::vector<std::vector<int>> patches = by_regions
+                                                    ? partition.divide_regions(is_wanted, m_random)
+                                                    : partition.divide(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
     return solve_round(patches, moves, density);
   }
