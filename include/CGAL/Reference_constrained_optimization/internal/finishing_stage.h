@@ -63,18 +63,22 @@ public:
   {
     measure_all();
     const double first_mean = mean(), largest_loss = 0.2;
-    const double largest_step = 2, smallest_step = 0.1, equilateral = 60; // degrees
+    const double largest_step = 2, equilateral = 60; // degrees
     double step = largest_step;
     double best = m_minimum;
+    bool goes_on = true;
     save();
-    while(step >= smallest_step && m_minimum < equilateral - smallest_step)
+    while(goes_on && step >= smallest_step && m_minimum < equilateral - smallest_step)
     {
+      const auto lowest = std::min_element(m_angles.begin(), m_angles.end()) - m_angles.begin();
+      if(!can_rise(int(lowest)))
+        break;
       const double minimum = m_minimum, mean_before = mean();
       const double target = (std::min)(minimum + step, equilateral);
       const double lagging = minimum + 0.2 * step, enough = minimum + 0.3 * step;
       // a little is lent to the neighbours of the sharpest, which would be in the way otherwise
       const Goal goal{target, cosine(minimum - 0.5 * step), cosine(lagging)};
-      bool goes_on = visit_below(target, goal, false, visit);
+      goes_on = visit_below(target, goal, false, visit);
       if(goes_on && m_minimum < lagging)
         goes_on = visit_below(lagging, goal, true, visit);
       const double price = 0.02 + 0.05 * (m_minimum - minimum);
@@ -93,23 +97,54 @@ public:
           m_touched.clear();
           best = m_minimum;
         }
-        if(m_minimum < enough && !widen(enough))
+        if(m_minimum > minimum + 0.8 * step)
+          step = (std::min)(largest_step, 2 * step);
+        else if(m_minimum < enough && !widen(enough))
           step *= 0.25;
       }
-      if(!goes_on)
-        break;
     }
     if(m_minimum < best)
+    {
       restore();
+      measure_touched();
+    }
+    if(goes_on && mean() < first_mean)
+      polish(visit, save, restore);
   }
 
 private:
   static constexpr double degrees_per_radian = 57.295779513082320877;
+  static constexpr double smallest_step = 0.1, negligible = 0.01; // degrees
+
+  // What the mean lost on the way is partly won back while the minimum is only held.
+  template <typename Visit, typename Save, typename Restore>
+  void polish(const Visit& visit, const Save& save, const Restore& restore)
+  {
+    const double minimum = m_minimum, mean_before = mean();
+    save();
+    m_touched.clear();
+    m_wanted.is_in = faces_around(m_state.mesh, vertices_of(m_state.mesh, m_is_visited), 1);
+    m_wanted.list.clear();
+    for(std::size_t f = 0; f < m_wanted.is_in.size(); ++f)
+      if(m_wanted.is_in[f])
+        m_wanted.list.push_back(int(f));
+    visit_wanted({minimum, cosine(minimum), cosine(minimum)}, false, visit);
+    if(m_minimum < minimum || mean() < mean_before)
+      restore();
+  }
 
   template <typename Visit>
   bool visit_below(double angle, const Goal& goal, bool searches, const Visit& visit)
   {
     find_below(angle);
+    for(const int f : m_wanted.list)
+      m_is_visited[f] = 1;
+    return visit_wanted(goal, searches, visit);
+  }
+
+  template <typename Visit>
+  bool visit_wanted(const Goal& goal, bool searches, const Visit& visit)
+  {
     const bool goes_on = visit(m_wanted, goal, searches);
     m_touched.insert(m_touched.end(), m_wanted.list.begin(), m_wanted.list.end());
     measure(m_wanted.list);
@@ -132,7 +167,7 @@ private:
     m_low.clear();
     int rings = 0;
     for(std::size_t f = 0; f < m_angles.size(); ++f)
-      if(m_angles[f] < angle)
+      if(m_angles[f] < angle && can_rise(int(f)))
       {
         m_low.push_back(int(f));
         rings = (std::max)(rings, int(m_rings[f]));
@@ -167,6 +202,32 @@ private:
     return widens;
   }
 
+  // A vertex bounds the smallest angle of the faces around it, as long as the sum of the angles there
+  // stays: the least of these is their mean at most, and the largest, the mean at least, leaves no more
+  // for the other two of its face.
+  bool can_rise(int f) const
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+    {
+      const int v = mesh.corner_vertex[c];
+      const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
+      double sum = 0;
+      for(int k = begin; k < end; ++k)
+      {
+        const int corner = mesh.vertex_corners[k];
+        const Vector_3 a = position(mesh.target(corner)) - position(v);
+        const Vector_3 b = position(mesh.source(mesh.previous(corner))) - position(v);
+        sum += degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
+      }
+      const double mean = sum / (end - begin);
+      if(m_angles[f] > (std::min)(mean, 90 - 0.5 * mean) - negligible)
+        return false;
+    }
+    return true;
+  }
+
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
   double mean() const { return m_sum / double(m_angles.size()); }
 
@@ -186,6 +247,7 @@ private:
     const int n = mesh.number_of_faces();
     m_angles.assign(n, 0);
     m_rings.assign(n, 1);
+    m_is_visited.assign(n, 0);
     std::vector<double> angles(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
@@ -227,6 +289,7 @@ private:
   double m_minimum = 0;               // of all faces that may change
   double m_sum = 0;                   // of all
   Faces m_wanted;
+  std::vector<char> m_is_visited; // per face
   std::vector<int> m_low;
   std::vector<int> m_touched; // faces that are not as they were when saved
 };

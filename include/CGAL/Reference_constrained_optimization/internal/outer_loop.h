@@ -101,11 +101,8 @@ public:
     if(!iterate_to_convergence(before))
       return;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
-    if(revisits && revisit_worst() && m_parameters.use_finishing_stage &&
-       m_parameters.use_on_surface_steps && m_prizes_angles)
-    {
+    if(revisits && revisit_worst() && finishes_angles())
       finish_angles();
-    }
   }
 
 private:
@@ -225,17 +222,44 @@ private:
       if(!(after < enough))
         return true;
       before = after;
-      m_limits.searched = worst.back().first;
-      const std::vector<char> around = faces_around(mesh, vertices_of(mesh, is_bad), 3);
       const bool goes_on =
-        m_parameters.use_on_surface_steps
-          ? visit_once(around, m_small_partition, Moves::on_surface, m_density) &&
-              visit_once(around, m_small_partition, Moves::by_search, m_density)
-          : visit(is_bad, m_small_selection);
+        m_parameters.use_on_surface_steps ? move_faces(worst) : visit(is_bad, m_small_selection);
       if(!goes_on)
         return false;
     }
     return true;
+  }
+
+  // Moves faces by steps on the surface, and by a search where these leave them as they were. Where the
+  // angles are finished, that searches, too: then only for what is far from good.
+  bool move_faces(const std::vector<std::pair<double, int>>& faces)
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    const double bad = (finishes_angles() ? 4 : 1) * m_limits.bad;
+    std::vector<char> is_left(mesh.number_of_faces(), 0);
+    for(const std::pair<double, int>& d : faces)
+      is_left[d.second] = 1;
+    if(!visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2), Moves::on_surface,
+                      m_density))
+      return false;
+    bool searches = false;
+    m_limits.searched = std::numeric_limits<double>::infinity();
+    for(const std::pair<double, int>& d : faces)
+    {
+      const double density = face_density(m_state, m_density, d.second);
+      is_left[d.second] = density > bad && density > 0.8 * d.first;
+      if(!is_left[d.second])
+        continue;
+      searches = true;
+      m_limits.searched = (std::min)(m_limits.searched, 0.99 * density);
+    }
+    return !searches || visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2),
+                                      Moves::by_search, m_density);
+  }
+
+  bool finishes_angles() const
+  {
+    return m_parameters.use_finishing_stage && m_parameters.use_on_surface_steps && m_prizes_angles;
   }
 
   void finish_angles()
@@ -265,9 +289,8 @@ private:
           }
         m_limits.sharpest = goal.sharpest;
         m_limits.sharp = goal.searched;
-        return visit_once(faces.is_in, m_small_partition,
-                          searches ? Moves::by_search : Moves::on_surface,
-                          Angle_barrier_density<Density>(m_density, goal.target), true);
+        return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
+                             Angle_barrier_density<Density>(m_density, goal.target));
       },
       [&]() {
         forget();
@@ -317,15 +340,25 @@ private:
   bool visit_once(const std::vector<char>& is_wanted,
                   Patch_partition& partition,
                   Moves moves,
-                  const AnyDensity& density,
-                  bool by_regions = false)
+                  const AnyDensity& density)
   {
     if(!may_go_on())
       return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<int>> patches = by_regions
-                                                    ? partition.divide_regions(is_wanted, m_random)
-                                                    : partition.divide(is_wanted, m_random);
+    const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    m_result.times.selection += seconds_since(start);
+    return solve_round(patches, moves, density);
+  }
+
+  // the same in small patches, of which each is a region of wanted faces if that is not too large
+  template <typename AnyDensity>
+  bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensity& density)
+  {
+    if(!may_go_on())
+      return false;
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<std::vector<int>> patches =
+      m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
     return solve_round(patches, moves, density);
   }
