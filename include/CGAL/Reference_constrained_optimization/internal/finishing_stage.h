@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -54,7 +56,14 @@ public:
     std::vector<char> is_in; // per face of the mesh
   };
 
-  explicit Finishing_stage(const Optimization_state& state) : m_state(state) {}
+  // `energy(f)` is that of a face; their sum may rise, but not beyond `largest_energy`.
+  Finishing_stage(const Optimization_state& state,
+                  std::function<double(int)> energy,
+                  double largest_energy)
+    : m_state(state),
+      m_face_energy(std::move(energy)),
+      m_largest_energy(largest_energy)
+  {}
 
   // `visit(faces, goal, searches)` optimizes these faces; false if it was cut short. `save()`
   // and `restore()` keep a state to which the stage returns.
@@ -66,10 +75,13 @@ public:
     const double largest_step = 2, equilateral = 60; // degrees
     double step = largest_step;
     double best = m_minimum;
+    const int maximum_passes = 100;
     bool goes_on = true;
     save();
-    while(goes_on && step >= smallest_step && m_minimum < equilateral - smallest_step)
+    for(int pass = 0; goes_on && pass < maximum_passes; ++pass)
     {
+      if(step < smallest_step || m_minimum > equilateral - smallest_step)
+        break;
       const auto lowest = std::min_element(m_angles.begin(), m_angles.end()) - m_angles.begin();
       if(!can_rise(int(lowest)))
         break;
@@ -82,7 +94,8 @@ public:
       if(goes_on && m_minimum < lagging)
         goes_on = visit_below(lagging, goal, true, visit);
       const double price = 0.02 + 0.05 * (m_minimum - minimum);
-      const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price;
+      const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price &&
+                         m_energy <= m_largest_energy;
       if(!holds)
       {
         restore();
@@ -129,7 +142,7 @@ private:
       if(m_wanted.is_in[f])
         m_wanted.list.push_back(int(f));
     visit_wanted({minimum, cosine(minimum), cosine(minimum)}, false, visit);
-    if(m_minimum < minimum || mean() < mean_before)
+    if(m_minimum < minimum || mean() < mean_before || m_energy > m_largest_energy)
       restore();
   }
 
@@ -249,10 +262,12 @@ private:
     m_rings.assign(n, 1);
     m_is_visited.assign(n, 0);
     std::vector<double> angles(n);
+    m_energies.resize(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
         angles[f] = smallest_angle(f);
+        m_energies[f] = m_face_energy(f);
         bool may_change = false;
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
           may_change = may_change || m_state.is_free[mesh.corner_vertex[c]];
@@ -262,6 +277,9 @@ private:
     m_sum = 0;
     for(const double angle : angles)
       m_sum += angle;
+    m_energy = 0;
+    for(const double energy : m_energies)
+      m_energy += energy;
     m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
   }
 
@@ -274,6 +292,9 @@ private:
         const double angle = smallest_angle(f);
         m_sum += angle - m_angles[f];
         m_angles[f] = angle;
+        const double energy = m_face_energy(f);
+        m_energy += energy - m_energies[f];
+        m_energies[f] = energy;
       }
     m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
   }
@@ -284,8 +305,12 @@ private:
   }
 
   const Optimization_state& m_state;
+  const std::function<double(int)> m_face_energy;
+  const double m_largest_energy;
   std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move
   std::vector<unsigned char> m_rings; // per face: what surroundings it needs
+  std::vector<double> m_energies;     // per face
+  double m_energy = 0;                // of all
   double m_minimum = 0;               // of all faces that may change
   double m_sum = 0;                   // of all
   Faces m_wanted;

@@ -81,6 +81,7 @@ public:
     m_limits.accepts_all = m_parameters.accepts_all;
     m_limits.strain_resistance = largest_resistance;
     before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
+    m_initial_energy = before.energy;
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
@@ -276,32 +277,40 @@ private:
       saved.clear();
     };
     using Stage = Finishing_stage<ConcurrencyTag>;
-    Stage(m_state).run(
-      [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
-        const Indexed_mesh& mesh = m_state.mesh;
-        for(const int f : faces.list)
-          for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-          {
-            const int v = mesh.corner_vertex[c];
-            if(!is_saved[v])
-              saved.emplace_back(v, m_state.vertices[v]);
-            is_saved[v] = 1;
-          }
-        m_limits.sharpest = goal.sharpest;
-        m_limits.sharp = goal.searched;
-        return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
-                             Angle_barrier_density<Density>(m_density, goal.target));
-      },
-      [&]() {
-        forget();
-        drift_guard = m_drift_guard;
-      },
-      [&]() {
-        for(const std::pair<int, Placed_vertex>& v : saved)
-          m_state.vertices[v.first] = v.second;
-        forget();
-        m_drift_guard = drift_guard;
-      });
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    const auto energy = [&](int f) {
+      double sum = 0;
+      for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
+        sum += element_energy(m_density, m_state.elements[e], vertex);
+      return sum;
+    };
+    Stage(m_state, energy, m_initial_energy)
+      .run(
+        [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
+          const Indexed_mesh& mesh = m_state.mesh;
+          for(const int f : faces.list)
+            for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+            {
+              const int v = mesh.corner_vertex[c];
+              if(!is_saved[v])
+                saved.emplace_back(v, m_state.vertices[v]);
+              is_saved[v] = 1;
+            }
+          m_limits.sharpest = goal.sharpest;
+          m_limits.sharp = goal.searched;
+          return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
+                               Angle_barrier_density<Density>(m_density, goal.target));
+        },
+        [&]() {
+          forget();
+          drift_guard = m_drift_guard;
+        },
+        [&]() {
+          for(const std::pair<int, Placed_vertex>& v : saved)
+            m_state.vertices[v.first] = v.second;
+          forget();
+          m_drift_guard = drift_guard;
+        });
     m_limits = limits;
     m_is_finishing = false;
   }
@@ -481,6 +490,7 @@ private:
   bool m_prizes_angles = false;
   double m_cap = 0;
   double m_rest_energy = 0;
+  double m_initial_energy = 0;
 };
 
 } // namespace internal
