@@ -74,6 +74,7 @@ public:
     const double first_mean = mean(), largest_loss = 0.2;
     const double largest_step = 2, equilateral = 60; // degrees
     double step = largest_step;
+    const double first_minimum = m_minimum;
     double best = m_minimum;
     const int maximum_passes = 100;
     bool goes_on = true;
@@ -89,7 +90,8 @@ public:
       const double target = (std::min)(minimum + step, equilateral);
       const double lagging = minimum + 0.2 * step, enough = minimum + 0.3 * step;
       // a little is lent to the neighbours of the sharpest, which would be in the way otherwise
-      const Goal goal{target, cosine(minimum - 0.5 * step), cosine(lagging)};
+      const double lent = (std::max)(first_minimum, minimum - 0.5 * step);
+      const Goal goal{target, cosine(lent), cosine(lagging)};
       goes_on = visit_below(target, goal, false, visit);
       if(goes_on && m_minimum < lagging)
         goes_on = visit_below(lagging, goal, true, visit);
