@@ -82,6 +82,34 @@ divided(const Indexed_mesh& mesh, const std::vector<char>& is_wanted, int size, 
   used.divide(is_wanted, other);
   used.set_patch_size(size);
   RCO_CHECK(used.divide(is_wanted, again) == patches);
+
+  // whole regions: again all wanted faces once, and none that touches another unless it was too large
+  CGAL::Random third(seed);
+  std::vector<int> patch_of(mesh.number_of_faces(), -1);
+  int number = 0;
+  for(const std::vector<int>& patch : used.divide_regions(is_wanted, third))
+  {
+    RCO_CHECK(is_connected(mesh, patch));
+    for(const int f : patch)
+    {
+      RCO_CHECK_EQUAL(patch_of[f], -1);
+      patch_of[f] = number;
+    }
+    ++number;
+  }
+  int touching = 0;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    RCO_CHECK_EQUAL(patch_of[f] >= 0, is_wanted[f] != 0);
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(mesh.opposite[c] >= 0 && patch_of[f] >= 0)
+      {
+        const int other = patch_of[mesh.corner_face[mesh.opposite[c]]];
+        touching += other >= 0 && other != patch_of[f];
+      }
+  }
+  const bool any_large = std::count(is_wanted.begin(), is_wanted.end(), char(1)) > 3 * size;
+  RCO_CHECK(any_large || touching == 0);
   return patches;
 }
 

@@ -80,24 +80,35 @@ private:
   };
 
   template <typename Density>
-  Star_measure measure(const Patch& patch, const Density& density, int v) const
+  double energy(const Patch& patch, const Density& density, int v) const
   {
     const Indexed_mesh& mesh = patch.polygons;
     const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
-    Star_measure m;
+    double sum = 0;
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     {
       const int f = mesh.corner_face[mesh.vertex_corners[k]];
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
-        m.energy += element_energy(density, patch.elements[e], vertex);
+        sum += element_energy(density, patch.elements[e], vertex);
+    }
+    return sum;
+  }
+
+  int defects(const Patch& patch, int v) const
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
+    int count = 0;
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int f = mesh.corner_face[mesh.vertex_corners[k]];
       const Vector_3 normal = face_normal(mesh, vertex, f);
-      m.defects += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
+      count += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0)
-          m.defects +=
-            is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]));
+          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]));
     }
-    return m;
+    return count;
   }
 
   // the vertices of bad elements that may move, and those around them
@@ -181,7 +192,7 @@ private:
   {
     const Placed_vertex here = m_placed[v];
     const Tangent_frame frame = tangent_frame(here.normal);
-    Star_measure best = measure(patch, density, v);
+    Star_measure best{energy(patch, density, v), defects(patch, v)};
     Placed_vertex best_place = here;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
@@ -193,7 +204,10 @@ private:
       Placed_vertex& there = m_placed[v];
       if(step_on_surface(m_reference, here, reach * (frame * Vector_2(d[0], d[1])), there))
       {
-        const Star_measure m = measure(patch, density, v);
+        // defects are costly to count
+        Star_measure m{energy(patch, density, v), 0};
+        if(m < best)
+          m.defects = defects(patch, v);
         if(m < best)
         {
           best = m;

@@ -49,21 +49,26 @@ inline std::vector<char> vertices_of(const Indexed_mesh& mesh, const std::vector
   return result;
 }
 
-// the largest density of the elements of every face, with the face
+// the largest density of the elements of a face
+template <typename Density>
+double face_density(const Optimization_state& state, const Density& density, int f)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  double largest = 0;
+  for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+    largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
+  return largest;
+}
+
+// of every face, with the face
 template <typename ConcurrencyTag, typename Density>
 std::vector<std::pair<double, int>> face_densities(const Optimization_state& state,
                                                    const Density& density)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
   std::vector<std::pair<double, int>> result(state.mesh.number_of_faces());
   for_each_block<ConcurrencyTag>(int(result.size()), [&](int begin, int end, int) {
     for(int f = begin; f < end; ++f)
-    {
-      double largest = 0;
-      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
-        largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
-      result[f] = std::make_pair(largest, f);
-    }
+      result[f] = std::make_pair(face_density(state, density, f), f);
   });
   return result;
 }

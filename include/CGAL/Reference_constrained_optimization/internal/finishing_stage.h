@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -33,9 +35,11 @@ inline bool prizes_angles(const Element_set& elements)
 }
 
 // Raises the smallest angle of a mesh with the help of a barrier on the angles below a target
-// (Angle_barrier_density), on patches around the faces with such angles; the energy is what it was
-// everywhere else. What can be reached is not known beforehand, and a target out of reach does harm:
-// it rises in steps, each of which must pay, else it is taken back and a smaller one tried.
+// (Angle_barrier_density), on small patches around the faces with such angles; the energy is what it
+// was everywhere else. What can be reached is not known beforehand: the target runs ahead of the
+// smallest angle, by less where that does not follow. A face that lags behind is given wider
+// surroundings first, up to a few rings: most need none. The best state is kept.
+template <typename ConcurrencyTag>
 class Finishing_stage
 {
 public:
@@ -46,100 +50,275 @@ public:
     double searched; // cosine of the angle below which a search takes over where Newton steps end
   };
 
-  explicit Finishing_stage(const Optimization_state& state) : m_state(state) {}
+  struct Faces
+  {
+    std::vector<int> list;
+    std::vector<char> is_in; // per face of the mesh
+  };
 
-  // `visit(is_wanted, goal, searches)` optimizes the wanted faces; false if it was cut short. `save()`
-  // and `restore()` keep a state to which a step returns.
+  // `energy(f)` is that of a face; their sum may rise, but not beyond `largest_energy`.
+  Finishing_stage(const Optimization_state& state,
+                  std::function<double(int)> energy,
+                  double largest_energy)
+    : m_state(state),
+      m_face_energy(std::move(energy)),
+      m_largest_energy(largest_energy)
+  {}
+
+  // `visit(faces, goal, searches)` optimizes these faces; false if it was cut short. `save()`
+  // and `restore()` keep a state to which the stage returns.
   template <typename Visit, typename Save, typename Restore>
   void run(const Visit& visit, const Save& save, const Restore& restore)
   {
-    measure();
-    const double first_mean = m_mean;
-    const double largest_step = 4, smallest_step = 0.1, equilateral = 60; // degrees
+    measure_all();
+    const double first_mean = mean(), largest_loss = 0.2;
+    const double largest_step = 2, equilateral = 60; // degrees
     double step = largest_step;
-    while(step >= smallest_step && m_minimum < equilateral - smallest_step)
+    const double first_minimum = m_minimum;
+    double best = m_minimum;
+    const int maximum_passes = 100;
+    bool goes_on = true;
+    save();
+    for(int pass = 0; goes_on && pass < maximum_passes; ++pass)
     {
-      const double minimum = m_minimum, mean = m_mean;
-      save();
-      const bool goes_on = take_step((std::min)(minimum + step, equilateral), visit);
-      const bool rises = m_minimum > minimum + 0.1 * step;
-      const bool holds = m_mean > mean - 0.05 && m_mean > first_mean - 0.2;
-      if(!rises || !holds)
+      if(step < smallest_step || m_minimum > equilateral - smallest_step)
+        break;
+      const auto lowest = std::min_element(m_angles.begin(), m_angles.end()) - m_angles.begin();
+      if(!can_rise(int(lowest)))
+        break;
+      const double minimum = m_minimum, mean_before = mean();
+      const double target = (std::min)(minimum + step, equilateral);
+      const double lagging = minimum + 0.2 * step, enough = minimum + 0.3 * step;
+      // a little is lent to the neighbours of the sharpest, which would be in the way otherwise
+      const double lent = (std::max)(first_minimum, minimum - 0.5 * step);
+      const Goal goal{target, cosine(lent), cosine(lagging)};
+      goes_on = visit_below(target, goal, false, visit);
+      if(goes_on && m_minimum < lagging)
+        goes_on = visit_below(lagging, goal, true, visit);
+      const double price = 0.02 + 0.05 * (m_minimum - minimum);
+      const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price &&
+                         m_energy <= m_largest_energy;
+      if(!holds)
       {
         restore();
-        measure();
+        measure_touched();
         step *= 0.25;
       }
-      else if(m_minimum < minimum + 0.8 * step)
-        step *= 0.5;
-      if(!goes_on)
-        return;
+      else
+      {
+        if(m_minimum > best)
+        {
+          save();
+          m_touched.clear();
+          best = m_minimum;
+        }
+        if(m_minimum > minimum + 0.8 * step)
+          step = (std::min)(largest_step, 2 * step);
+        else if(m_minimum < enough && !widen(enough))
+          step *= 0.25;
+      }
     }
+    if(m_minimum < best)
+    {
+      restore();
+      measure_touched();
+    }
+    if(goes_on && mean() < first_mean)
+      polish(visit, save, restore);
   }
 
 private:
   static constexpr double degrees_per_radian = 57.295779513082320877;
+  static constexpr double smallest_step = 0.1, negligible = 0.01; // degrees
+
+  // What the mean lost on the way is partly won back while the minimum is only held.
+  template <typename Visit, typename Save, typename Restore>
+  void polish(const Visit& visit, const Save& save, const Restore& restore)
+  {
+    const double minimum = m_minimum, mean_before = mean();
+    save();
+    m_touched.clear();
+    m_wanted.is_in = faces_around(m_state.mesh, vertices_of(m_state.mesh, m_is_visited), 1);
+    m_wanted.list.clear();
+    for(std::size_t f = 0; f < m_wanted.is_in.size(); ++f)
+      if(m_wanted.is_in[f])
+        m_wanted.list.push_back(int(f));
+    visit_wanted({minimum, cosine(minimum), cosine(minimum)}, false, visit);
+    if(m_minimum < minimum || mean() < mean_before || m_energy > m_largest_energy)
+      restore();
+  }
 
   template <typename Visit>
-  bool take_step(double target, const Visit& visit)
+  bool visit_below(double angle, const Goal& goal, bool searches, const Visit& visit)
   {
-    const double minimum = m_minimum, step = target - minimum;
-    const Goal goal{target, cosine(minimum), cosine(minimum + 0.5 * step)};
-    const int maximum_passes = 3;
-    for(int pass = 0; pass < maximum_passes && m_minimum < target - 0.2 * step; ++pass)
-    {
-      if(!visit(faces_below(target + 1, 3), goal, false))
-        return false;
-      measure();
-    }
-    if(m_minimum >= minimum + 0.5 * step)
-      return true;
-    const bool goes_on = visit(faces_below(minimum + 0.5 * step, 3), goal, true);
-    measure();
+    find_below(angle);
+    for(const int f : m_wanted.list)
+      m_is_visited[f] = 1;
+    return visit_wanted(goal, searches, visit);
+  }
+
+  template <typename Visit>
+  bool visit_wanted(const Goal& goal, bool searches, const Visit& visit)
+  {
+    const bool goes_on = visit(m_wanted, goal, searches);
+    m_touched.insert(m_touched.end(), m_wanted.list.begin(), m_wanted.list.end());
+    measure(m_wanted.list);
     return goes_on;
   }
 
-  // the faces with an angle below the given one, and some rings around them
-  std::vector<char> faces_below(double angle, int rings) const
+  // wants the faces with an angle below the given one, and the rings around each that it needs
+  void find_below(double angle)
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    std::vector<char> is_low(m_angles.size(), 0);
+    m_wanted.list.clear();
+    m_wanted.is_in.assign(m_angles.size(), 0);
+    const auto want = [&](int f) {
+      if(!m_wanted.is_in[f])
+      {
+        m_wanted.is_in[f] = 1;
+        m_wanted.list.push_back(f);
+      }
+    };
+    m_low.clear();
+    int rings = 0;
     for(std::size_t f = 0; f < m_angles.size(); ++f)
-      is_low[f] = m_angles[f] < angle;
-    return faces_around(mesh, vertices_of(mesh, is_low), rings);
+      if(m_angles[f] < angle && can_rise(int(f)))
+      {
+        m_low.push_back(int(f));
+        rings = (std::max)(rings, int(m_rings[f]));
+      }
+    for(; rings > 0; --rings)
+    {
+      for(const int f : m_low)
+        if(m_rings[f] >= rings)
+          want(f);
+      for(std::size_t i = 0, end = m_wanted.list.size(); i < end; ++i)
+        for(int c = mesh.face_begin[m_wanted.list[i]]; c < mesh.face_begin[m_wanted.list[i] + 1];
+            ++c)
+        {
+          const int v = mesh.corner_vertex[c];
+          for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+            want(mesh.corner_face[mesh.vertex_corners[k]]);
+        }
+    }
+  }
+
+  // more rings around the faces with an angle below the given one; false if they have enough
+  bool widen(double angle)
+  {
+    const int most = 3;
+    bool widens = false;
+    for(std::size_t f = 0; f < m_angles.size(); ++f)
+      if(m_angles[f] < angle && m_rings[f] < most)
+      {
+        ++m_rings[f];
+        widens = true;
+      }
+    return widens;
+  }
+
+  // A vertex bounds the smallest angle of the faces around it, as long as the sum of the angles there
+  // stays: the least of these is their mean at most, and the largest, the mean at least, leaves no more
+  // for the other two of its face.
+  bool can_rise(int f) const
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+    {
+      const int v = mesh.corner_vertex[c];
+      const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
+      double sum = 0;
+      for(int k = begin; k < end; ++k)
+      {
+        const int corner = mesh.vertex_corners[k];
+        const Vector_3 a = position(mesh.target(corner)) - position(v);
+        const Vector_3 b = position(mesh.source(mesh.previous(corner))) - position(v);
+        sum += degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
+      }
+      const double mean = sum / (end - begin);
+      if(m_angles[f] > (std::min)(mean, 90 - 0.5 * mean) - negligible)
+        return false;
+    }
+    return true;
   }
 
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
+  double mean() const { return m_sum / double(m_angles.size()); }
 
-  // the smallest angle of every face, of all faces that may change, and the mean
-  void measure()
+  // of a face
+  double smallest_angle(int f) const
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    double cosine = -1;
+    for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
+      cosine = (std::max)(cosine, smallest_angle_cosine(m_state.elements[e], vertex));
+    return degrees_per_radian * std::acos((std::min)(1., cosine));
+  }
+
+  void measure_all()
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
-    m_angles.resize(mesh.number_of_faces());
-    m_minimum = 180;
-    m_mean = 0;
-    for(int f = 0; f < mesh.number_of_faces(); ++f)
-    {
-      double cosine = -1;
-      for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
-        cosine = (std::max)(cosine, smallest_angle_cosine(m_state.elements[e], vertex));
-      m_angles[f] = degrees_per_radian * std::acos((std::min)(1., cosine));
-      m_mean += m_angles[f];
-      bool may_change = false;
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        may_change = may_change || m_state.is_free[mesh.corner_vertex[c]];
-      if(may_change)
-        m_minimum = (std::min)(m_minimum, m_angles[f]);
-      else
-        m_angles[f] = 180;
-    }
-    m_mean /= double(m_angles.size());
+    const int n = mesh.number_of_faces();
+    m_angles.assign(n, 0);
+    m_rings.assign(n, 1);
+    m_is_visited.assign(n, 0);
+    std::vector<double> angles(n);
+    m_energies.resize(n);
+    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+      for(int f = begin; f < end; ++f)
+      {
+        angles[f] = smallest_angle(f);
+        m_energies[f] = m_face_energy(f);
+        bool may_change = false;
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          may_change = may_change || m_state.is_free[mesh.corner_vertex[c]];
+        m_angles[f] = may_change ? angles[f] : 180;
+      }
+    });
+    m_sum = 0;
+    for(const double angle : angles)
+      m_sum += angle;
+    m_energy = 0;
+    for(const double energy : m_energies)
+      m_energy += energy;
+    m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
+  }
+
+  // again, where the mesh may have changed
+  void measure(const std::vector<int>& faces)
+  {
+    for(const int f : faces)
+      if(m_angles[f] < 180)
+      {
+        const double angle = smallest_angle(f);
+        m_sum += angle - m_angles[f];
+        m_angles[f] = angle;
+        const double energy = m_face_energy(f);
+        m_energy += energy - m_energies[f];
+        m_energies[f] = energy;
+      }
+    m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
+  }
+  void measure_touched()
+  {
+    measure(m_touched);
+    m_touched.clear();
   }
 
   const Optimization_state& m_state;
-  std::vector<double> m_angles; // per face; 180 if none of its vertices may move
-  double m_minimum = 0, m_mean = 0;
+  const std::function<double(int)> m_face_energy;
+  const double m_largest_energy;
+  std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move
+  std::vector<unsigned char> m_rings; // per face: what surroundings it needs
+  std::vector<double> m_energies;     // per face
+  double m_energy = 0;                // of all
+  double m_minimum = 0;               // of all faces that may change
+  double m_sum = 0;                   // of all
+  Faces m_wanted;
+  std::vector<char> m_is_visited; // per face
+  std::vector<int> m_low;
+  std::vector<int> m_touched; // faces that are not as they were when saved
 };
 
 } // namespace internal

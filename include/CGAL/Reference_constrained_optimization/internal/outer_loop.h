@@ -82,6 +82,7 @@ public:
     m_limits.accepts_all = m_parameters.accepts_all;
     m_limits.strain_resistance = largest_resistance;
     before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
+    m_initial_energy = before.energy;
 
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
@@ -106,8 +107,7 @@ public:
     if(!iterate_to_convergence(before))
       return;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
-    if(revisits && revisit_worst() && m_parameters.use_finishing_stage &&
-       m_parameters.use_on_surface_steps && m_prizes_angles)
+    if(revisits && revisit_worst() && finishes_angles())
       finish_angles();
   }
 
@@ -228,17 +228,44 @@ private:
       if(!(after < enough))
         return true;
       before = after;
-      m_limits.searched = worst.back().first;
-      const std::vector<char> around = faces_around(mesh, vertices_of(mesh, is_bad), 3);
       const bool goes_on =
-        m_parameters.use_on_surface_steps
-          ? visit_once(around, m_small_partition, Moves::on_surface, m_density) &&
-              visit_once(around, m_small_partition, Moves::by_search, m_density)
-          : visit(is_bad, m_small_selection);
+        m_parameters.use_on_surface_steps ? move_faces(worst) : visit(is_bad, m_small_selection);
       if(!goes_on)
         return false;
     }
     return true;
+  }
+
+  // Moves faces by steps on the surface, and by a search where these leave them as they were. Where the
+  // angles are finished, that searches, too: then only for what is far from good.
+  bool move_faces(const std::vector<std::pair<double, int>>& faces)
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    const double bad = (finishes_angles() ? 4 : 1) * m_limits.bad;
+    std::vector<char> is_left(mesh.number_of_faces(), 0);
+    for(const std::pair<double, int>& d : faces)
+      is_left[d.second] = 1;
+    if(!visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2), Moves::on_surface,
+                      m_density))
+      return false;
+    bool searches = false;
+    m_limits.searched = std::numeric_limits<double>::infinity();
+    for(const std::pair<double, int>& d : faces)
+    {
+      const double density = face_density(m_state, m_density, d.second);
+      is_left[d.second] = density > bad && density > 0.8 * d.first;
+      if(!is_left[d.second])
+        continue;
+      searches = true;
+      m_limits.searched = (std::min)(m_limits.searched, 0.99 * density);
+    }
+    return !searches || visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2),
+                                      Moves::by_search, m_density);
+  }
+
+  bool finishes_angles() const
+  {
+    return m_parameters.use_finishing_stage && m_parameters.use_on_surface_steps && m_prizes_angles;
   }
 
   void finish_angles()
@@ -246,24 +273,49 @@ private:
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    std::vector<Placed_vertex> vertices;
     Drift_guard drift_guard;
-    Finishing_stage(m_state).run(
-      [&](const std::vector<char>& is_wanted, const Finishing_stage::Goal& goal, bool searches) {
-        m_limits.sharpest = goal.sharpest;
-        m_limits.sharp = goal.searched;
-        return visit_once(is_wanted, m_small_partition,
-                          searches ? Moves::by_search : Moves::on_surface,
-                          Angle_barrier_density<Density>(m_density, goal.target));
-      },
-      [&]() {
-        vertices = m_state.vertices;
-        drift_guard = m_drift_guard;
-      },
-      [&]() {
-        m_state.vertices = vertices;
-        m_drift_guard = drift_guard;
-      });
+    std::vector<std::pair<int, Placed_vertex>> saved; // vertices, before they were in a patch
+    std::vector<char> is_saved(m_state.vertices.size(), 0);
+    const auto forget = [&]() {
+      for(const std::pair<int, Placed_vertex>& v : saved)
+        is_saved[v.first] = 0;
+      saved.clear();
+    };
+    using Stage = Finishing_stage<ConcurrencyTag>;
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    const auto energy = [&](int f) {
+      double sum = 0;
+      for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
+        sum += element_energy(m_density, m_state.elements[e], vertex);
+      return sum;
+    };
+    Stage(m_state, energy, m_initial_energy)
+      .run(
+        [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
+          const Indexed_mesh& mesh = m_state.mesh;
+          for(const int f : faces.list)
+            for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+            {
+              const int v = mesh.corner_vertex[c];
+              if(!is_saved[v])
+                saved.emplace_back(v, m_state.vertices[v]);
+              is_saved[v] = 1;
+            }
+          m_limits.sharpest = goal.sharpest;
+          m_limits.sharp = goal.searched;
+          return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
+                               Angle_barrier_density<Density>(m_density, goal.target));
+        },
+        [&]() {
+          forget();
+          drift_guard = m_drift_guard;
+        },
+        [&]() {
+          for(const std::pair<int, Placed_vertex>& v : saved)
+            m_state.vertices[v.first] = v.second;
+          forget();
+          m_drift_guard = drift_guard;
+        });
     m_limits = limits;
     m_is_finishing = false;
   }
@@ -308,6 +360,19 @@ private:
       return false;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    m_result.times.selection += seconds_since(start);
+    return solve_round(patches, moves, density);
+  }
+
+  // the same in small patches, of which each is a region of wanted faces if that is not too large
+  template <typename AnyDensity>
+  bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensity& density)
+  {
+    if(!may_go_on())
+      return false;
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<std::vector<int>> patches =
+      m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
     return solve_round(patches, moves, density);
   }
@@ -430,6 +495,7 @@ private:
   bool m_prizes_angles = false;
   double m_cap = 0;
   double m_rest_energy = 0;
+  double m_initial_energy = 0;
 };
 
 } // namespace internal

@@ -38,6 +38,45 @@ public:
   int patch_size() const { return m_size; }
   void set_patch_size(int size) { m_size = size; }
 
+  // the regions that the wanted faces form are patches, unless one is much too large: those are
+  // divided. The largest first.
+  std::vector<std::vector<int>> divide_regions(const std::vector<char>& is_wanted,
+                                               CGAL::Random& random)
+  {
+    std::vector<std::vector<int>> patches;
+    std::vector<char> is_left = is_wanted, is_large;
+    for(int start = 0; start < m_mesh.number_of_faces(); ++start)
+    {
+      if(!is_left[start])
+        continue;
+      std::vector<int> region(1, start);
+      is_left[start] = 0;
+      for(std::size_t next = 0; next < region.size(); ++next)
+        for(int c = m_mesh.face_begin[region[next]]; c < m_mesh.face_begin[region[next] + 1]; ++c)
+        {
+          const int o = m_mesh.opposite[c];
+          if(o >= 0 && is_left[m_mesh.corner_face[o]])
+          {
+            is_left[m_mesh.corner_face[o]] = 0;
+            region.push_back(m_mesh.corner_face[o]);
+          }
+        }
+      if(region.size() <= std::size_t((std::min)(3 * m_size, m_largest)))
+      {
+        patches.push_back(std::move(region));
+        continue;
+      }
+      is_large.resize(is_wanted.size(), 0);
+      for(const int f : region)
+        is_large[f] = 1;
+    }
+    if(!is_large.empty())
+      for(std::vector<int>& patch : divide(is_large, random))
+        patches.push_back(std::move(patch));
+    sort(patches);
+    return patches;
+  }
+
   // patches of about the given number of faces, the largest first
   std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted, CGAL::Random& random)
   {
@@ -57,13 +96,18 @@ public:
     std::vector<std::vector<int>> patches(cells);
     for(const int f : m_queue)
       patches[m_cell[f]].push_back(f);
-    std::stable_sort(
-      patches.begin(), patches.end(),
-      [](const std::vector<int>& a, const std::vector<int>& b) { return a.size() > b.size(); });
+    sort(patches);
     return patches;
   }
 
 private:
+  static void sort(std::vector<std::vector<int>>& patches)
+  {
+    std::stable_sort(
+      patches.begin(), patches.end(),
+      [](const std::vector<int>& a, const std::vector<int>& b) { return a.size() > b.size(); });
+  }
+
   // gives all wanted faces to cells that grow from the seeds, and from further ones where none of these
   // leads or may lead; m_queue holds them in the order in which they were reached. Returns the number of cells.
   int grow(const std::vector<int>& wanted,
