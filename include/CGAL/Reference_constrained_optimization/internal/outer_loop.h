@@ -72,7 +72,7 @@ public:
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
-    const double typical = lower_half_mean(m_state, m_density);
+    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
     m_cap = 10 * typical;
     m_rest_energy = rest_energy(m_state, m_density);
     m_limits.worst = before.worst;
@@ -94,7 +94,7 @@ public:
       m_drift_guard.initialize(m_state);
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
-    m_is_active = faces_around(mesh, m_state.is_free, 0);
+    m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
     m_result.status = Status::iteration_limit;
@@ -141,7 +141,7 @@ private:
       if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
-          m_is_active = faces_around(mesh, m_moved, 1);
+          m_is_active = faces_around<ConcurrencyTag>(mesh, m_moved, 1);
       }
       else if(!divide_further())
       {
@@ -170,6 +170,18 @@ private:
   {
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection);
+    std::vector<char> is_wanted;
+    std::vector<std::vector<int>> patches;
+    // the second patches do not hang on what the first ones do
+    call_both<ConcurrencyTag>([&]() { is_wanted = faces_to_flatten(); },
+                              [&]() { patches = divide(m_is_active, m_partition); });
+    return visit(is_wanted, m_selection) && may_go_on() &&
+           solve_round(patches, Moves::on_surface, m_density);
+  }
+
+  // the active faces that are turned over or folded or in bad regions, and those around them
+  std::vector<char> faces_to_flatten() const
+  {
     const Indexed_mesh& mesh = m_state.mesh;
     // sharp triangles are a matter of their vertices, stretched ones of what is around them
     const int smallest_region = m_prizes_angles ? 20 : 1;
@@ -178,11 +190,10 @@ private:
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
-    is_wanted = faces_around(mesh, vertices_of(mesh, is_wanted), 2);
+    is_wanted = faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_wanted), 2);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
-    return visit(is_wanted, m_selection) &&
-           visit_once(m_is_active, m_partition, Moves::on_surface, m_density);
+    return is_wanted;
   }
 
   // What is left to gain is what the energy has above that of elements that are all at rest.
@@ -301,10 +312,16 @@ private:
   {
     if(!may_go_on())
       return false;
+    return solve_round(divide(is_wanted, partition), moves, density);
+  }
+
+  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted,
+                                       Patch_partition& partition)
+  {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
-    return solve_round(patches, moves, density);
+    return patches;
   }
 
   bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
@@ -338,24 +355,33 @@ private:
         solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
     });
     for(Solved_patch& s : solved)
-      if(!s.patch.faces.empty())
+      commit_boundary(m_state, s);
+    m_for_each(solved.size(), [&](Patch_solver&, std::size_t i) {
+      if(solved[i].decision.accepted)
       {
-        if(commit(m_state, s))
-          update(s);
-        report(s);
+        commit_inside(m_state, solved[i]);
+        update(solved[i]);
       }
+    });
+    for(const Solved_patch& s : solved)
+      if(!s.patch.faces.empty())
+        count(s);
+    for(const Solved_patch& s : solved)
+      if(!s.patch.faces.empty())
+        report(s);
     m_visitor.on_round_end();
     if(stops && !is_sequential)
       m_result.status = Status::time_limit;
     return !stops;
   }
 
-  // what follows from a patch that stays; `s.placed` holds its old vertices
+  // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
+  // vertices
   void update(const Solved_patch& s)
   {
     const Patch& patch = s.patch;
-    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
-      if(patch.is_free[i])
+    for(const std::vector<int>* vertices : {&s.outer_vertices, &s.inner_vertices})
+      for(const int i : *vertices)
       {
         const int v = patch.vertices[i];
         const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
@@ -368,7 +394,7 @@ private:
     m_drift_guard.take_back(patch);
   }
 
-  void report(const Solved_patch& s)
+  void count(const Solved_patch& s)
   {
     ++m_result.number_of_patches;
     m_result.sum_of_patch_sizes += double(s.patch.faces.size());
@@ -385,6 +411,16 @@ private:
     }
     m_result.number_of_accepted_patches += s.decision.accepted;
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
+    if(s.was_tried && !s.is_flattened)
+    {
+      m_taken += s.taken * s.patch.number_of_free_vertices;
+      m_could_move += s.patch.number_of_free_vertices;
+    }
+    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
+  }
+
+  void report(const Solved_patch& s)
+  {
     Patch_report report;
     report.number_of_faces = s.patch.faces.size();
     report.energy_before = s.decision.before.energy;
@@ -393,12 +429,6 @@ private:
     report.defects_after = std::size_t(s.decision.after.defects());
     report.accepted = s.decision.accepted;
     report.is_finishing = m_is_finishing;
-    if(s.was_tried && !s.is_flattened)
-    {
-      m_taken += s.taken * s.patch.number_of_free_vertices;
-      m_could_move += s.patch.number_of_free_vertices;
-    }
-    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
     m_visitor.on_patch_end(report);
   }
 

@@ -12,9 +12,11 @@
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -24,10 +26,14 @@ namespace internal {
 // how a patch is moved
 enum class Moves { flattened, on_surface, by_search };
 
-// what is known of a patch after it was solved
+// What is known of a patch after it was solved. All patches of a round are kept until it ends: what
+// only the solver needs is dropped.
 struct Solved_patch
 {
-  Patch patch;
+  Patch patch;                              // its faces, vertices and guests
+  std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
+  // the free vertices, in local indices: those of faces at the boundary, and the others
+  std::vector<int> outer_vertices, inner_vertices;
   Acceptance_test::Decision decision;
   std::vector<Placed_vertex> placed;
   Flattening_path path = Flattening_path::failed;
@@ -68,7 +74,10 @@ public:
     s.patch = m_builder.build(faces, state);
     s.acceptance_time = seconds_since(start);
     if(s.patch.number_of_free_vertices == 0)
+    {
+      finish(s);
       return;
+    }
     s.was_tried = true;
     drift_guard.invite(s.patch);
     s.is_flattened = moves == Moves::flattened;
@@ -92,10 +101,38 @@ public:
       improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
               limits, s);
     }
-    s.placed = s.patch.placed;
+    finish(s);
   }
 
 private:
+  // notes what the commit needs, and drops what it does not
+  static void finish(Solved_patch& s)
+  {
+    Patch kept;
+    kept.faces = std::move(s.patch.faces);
+    kept.number_of_free_vertices = s.patch.number_of_free_vertices;
+    if(s.decision.accepted)
+    {
+      const Indexed_mesh& mesh = s.patch.polygons;
+      std::vector<char> is_outer(s.patch.vertices.size(), 0);
+      for(int c = 0; c < mesh.number_of_corners(); ++c)
+        if(s.patch.outside_face[c] >= 0)
+        {
+          const int f = mesh.corner_face[c];
+          s.boundary.push_back({{kept.faces[f], s.patch.outside_face[c]}});
+          for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
+            is_outer[mesh.corner_vertex[d]] = 1;
+        }
+      for(std::size_t v = 0; v < is_outer.size(); ++v)
+        if(s.patch.is_free[v])
+          (is_outer[v] ? s.outer_vertices : s.inner_vertices).push_back(int(v));
+      kept.vertices = std::move(s.patch.vertices);
+      kept.guests = std::move(s.patch.guests);
+      s.placed = std::move(s.patch.placed);
+    }
+    s.patch = std::move(kept);
+  }
+
   // what is prepared once serves several proposals
   template <typename Mover, typename Density>
   void improve(Mover& mover,
