@@ -361,13 +361,14 @@ private:
       {
         commit_inside(m_state, solved[i]);
         update(solved[i]);
+        solved[i].drop_vertices();
       }
     });
     for(const Solved_patch& s : solved)
-      if(!s.patch.faces.empty())
+      if(s.number_of_faces > 0)
         count(s);
     for(const Solved_patch& s : solved)
-      if(!s.patch.faces.empty())
+      if(s.number_of_faces > 0)
         report(s);
     m_visitor.on_round_end();
     if(stops && !is_sequential)
@@ -397,7 +398,7 @@ private:
   void count(const Solved_patch& s)
   {
     ++m_result.number_of_patches;
-    m_result.sum_of_patch_sizes += double(s.patch.faces.size());
+    m_result.sum_of_patch_sizes += double(s.number_of_faces);
     m_result.times.flattening += s.flattening_time;
     m_result.times.optimization += s.optimization_time;
     m_result.times.acceptance += s.acceptance_time;
@@ -413,8 +414,8 @@ private:
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
     if(s.was_tried && !s.is_flattened)
     {
-      m_taken += s.taken * s.patch.number_of_free_vertices;
-      m_could_move += s.patch.number_of_free_vertices;
+      m_taken += s.taken * s.number_of_free_vertices;
+      m_could_move += s.number_of_free_vertices;
     }
     m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
   }
@@ -422,7 +423,7 @@ private:
   void report(const Solved_patch& s)
   {
     Patch_report report;
-    report.number_of_faces = s.patch.faces.size();
+    report.number_of_faces = s.number_of_faces;
     report.energy_before = s.decision.before.energy;
     report.energy_after = s.decision.after.energy;
     report.defects_before = std::size_t(s.decision.before.defects());

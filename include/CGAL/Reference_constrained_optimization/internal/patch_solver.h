@@ -43,6 +43,17 @@ struct Solved_patch
   double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
+  std::size_t number_of_faces = 0, number_of_free_vertices = 0; // of the patch; 0: was not solved
+
+  // frees what is of no use after the commit
+  void drop_vertices()
+  {
+    patch = Patch();
+    boundary = std::vector<std::array<int, 2>>();
+    outer_vertices = std::vector<int>();
+    inner_vertices = std::vector<int>();
+    placed = std::vector<Placed_vertex>();
+  }
 };
 
 // Takes one patch through the steps of the paper: flatten, optimize, map back, accept; or moves it
@@ -108,9 +119,9 @@ private:
   // notes what the commit needs, and drops what it does not
   static void finish(Solved_patch& s)
   {
+    s.number_of_faces = s.patch.faces.size();
+    s.number_of_free_vertices = std::size_t(s.patch.number_of_free_vertices);
     Patch kept;
-    kept.faces = std::move(s.patch.faces);
-    kept.number_of_free_vertices = s.patch.number_of_free_vertices;
     if(s.decision.accepted)
     {
       const Indexed_mesh& mesh = s.patch.polygons;
@@ -119,13 +130,14 @@ private:
         if(s.patch.outside_face[c] >= 0)
         {
           const int f = mesh.corner_face[c];
-          s.boundary.push_back({{kept.faces[f], s.patch.outside_face[c]}});
+          s.boundary.push_back({{s.patch.faces[f], s.patch.outside_face[c]}});
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
         }
       for(std::size_t v = 0; v < is_outer.size(); ++v)
         if(s.patch.is_free[v])
           (is_outer[v] ? s.outer_vertices : s.inner_vertices).push_back(int(v));
+      kept.faces = std::move(s.patch.faces);
       kept.vertices = std::move(s.patch.vertices);
       kept.guests = std::move(s.patch.guests);
       s.placed = std::move(s.patch.placed);
