@@ -36,11 +36,11 @@ exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& loc
 
 // Decides whether an accepted patch stays. Another patch of the round may have moved faces across its
 // boundary since it was judged: what folds there is counted anew. Only the vertices that other patches
-// see are exchanged; `commit_inside()` has to follow.
-inline bool commit_boundary(Optimization_state& state, Solved_patch& s)
+// see are exchanged; `commit_inside()` has to follow if it stays.
+inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)
-    return false;
+    return;
   const int folds_before = boundary_folds(state, s);
   exchange(state, s, s.outer_vertices);
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
@@ -52,11 +52,10 @@ inline bool commit_boundary(Optimization_state& state, Solved_patch& s)
     exchange(state, s, s.outer_vertices);
     s.decision.accepted = false;
     s.decision.after = s.decision.before;
-    return false;
+    return;
   }
   s.decision.after.boundary_defects =
     before.boundary_defects + change - (after.inner_defects - before.inner_defects);
-  return true;
 }
 
 // Exchanges all other vertices of a patch that stays; its `placed` then holds the old ones. Patches of

@@ -354,26 +354,45 @@ private:
       if(!stops)
         solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
     });
-    for(Solved_patch& s : solved)
-      commit_boundary(m_state, s);
-    m_for_each(solved.size(), [&](Patch_solver&, std::size_t i) {
-      if(solved[i].decision.accepted)
-      {
-        commit_inside(m_state, solved[i]);
-        update(solved[i]);
-        solved[i].drop_vertices();
-      }
-    });
-    for(const Solved_patch& s : solved)
-      if(s.number_of_faces > 0)
-        count(s);
-    for(const Solved_patch& s : solved)
-      if(s.number_of_faces > 0)
-        report(s);
+    commit(solved);
     m_visitor.on_round_end();
     if(stops && !is_sequential)
       m_result.status = Status::time_limit;
     return !stops;
+  }
+
+  // commits the patches of a round and reports them; those that were reported stay also when the
+  // visitor throws
+  void commit(std::vector<Solved_patch>& solved)
+  {
+    std::size_t number = 0;
+    const auto commit_insides = [&]() {
+      m_for_each(number, [&](Patch_solver&, std::size_t i) {
+        if(solved[i].decision.accepted)
+        {
+          commit_inside(m_state, solved[i]);
+          update(solved[i]);
+        }
+        solved[i].drop_vertices();
+      });
+    };
+    try
+    {
+      while(number < solved.size())
+      {
+        Solved_patch& s = solved[number++];
+        if(s.number_of_faces == 0)
+          continue;
+        commit_boundary(m_state, s);
+        report(s);
+      }
+    }
+    catch(...)
+    {
+      commit_insides();
+      throw;
+    }
+    commit_insides();
   }
 
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
@@ -395,7 +414,7 @@ private:
     m_drift_guard.take_back(patch);
   }
 
-  void count(const Solved_patch& s)
+  void report(const Solved_patch& s)
   {
     ++m_result.number_of_patches;
     m_result.sum_of_patch_sizes += double(s.number_of_faces);
@@ -418,10 +437,7 @@ private:
       m_could_move += s.number_of_free_vertices;
     }
     m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
-  }
 
-  void report(const Solved_patch& s)
-  {
     Patch_report report;
     report.number_of_faces = s.number_of_faces;
     report.energy_before = s.decision.before.energy;
