@@ -183,8 +183,9 @@ private:
   std::vector<char> faces_to_flatten() const
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    // sharp triangles are a matter of their vertices, stretched ones of what is around them
-    const int smallest_region = m_prizes_angles ? 20 : 1;
+    // sharp triangles are a matter of their vertices, stretched ones of what is around them; in a fine
+    // mesh what was one triangle is many
+    const int smallest_region = m_prizes_angles ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     const std::vector<char> is_bad =
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
