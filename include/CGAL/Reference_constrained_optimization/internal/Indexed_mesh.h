@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INDEXED_MESH_H
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -40,12 +41,16 @@ public:
   Indexed_mesh() = default;
 
   // faces are given by face_begin and corner_vertex; edges that are not manifold are refused
-  Indexed_mesh(std::vector<int> begins, std::vector<int> vertices, int number_of_vertices)
+  template <typename ConcurrencyTag = CGAL::Sequential_tag>
+  Indexed_mesh(std::vector<int> begins,
+               std::vector<int> vertices,
+               int number_of_vertices,
+               const ConcurrencyTag& = ConcurrencyTag())
     : face_begin(std::move(begins)),
       corner_vertex(std::move(vertices))
   {
     collect_corners(number_of_vertices);
-    match_opposites();
+    match_opposites<ConcurrencyTag>();
     mark_border_vertices();
   }
 
@@ -81,41 +86,55 @@ public:
   int target(int c) const { return corner_vertex[next(c)]; }
 
   // the first vertex whose faces do not form one fan, or -1
+  template <typename ConcurrencyTag = CGAL::Sequential_tag>
   int find_nonmanifold_vertex() const
   {
-    for(int v = 0; v < number_of_vertices(); ++v)
-    {
-      const int degree = vertex_begin[v + 1] - vertex_begin[v];
-      if(degree == 0)
-        continue;
-      const int start = vertex_corners[vertex_begin[v]];
-      int count = 1, c = start;
-      bool closed = false;
-      for(int o = opposite[previous(c)]; o >= 0; o = opposite[previous(c)])
-      {
-        if(o == start)
-        {
-          closed = true;
-          break;
-        }
-        c = o;
-        if(++count > degree)
-          return v;
-      }
-      c = start;
-      while(!closed && opposite[c] >= 0)
-      {
-        c = next(opposite[c]);
-        if(++count > degree)
-          return v;
-      }
-      if(count != degree)
-        return v;
-    }
-    return -1;
+    return find_first<ConcurrencyTag>(number_of_vertices(), [&](int v) { return !is_fan(v); });
   }
 
 private:
+  // the first index below n for which is_it(i) is true, or -1
+  template <typename ConcurrencyTag, typename IsIt>
+  static int find_first(int n, const IsIt& is_it)
+  {
+    std::vector<int> found(number_of_blocks(n), -1);
+    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
+      for(int i = begin; i < end && found[block] < 0; ++i)
+        if(is_it(i))
+          found[block] = i;
+    });
+    for(const int i : found)
+      if(i >= 0)
+        return i;
+    return -1;
+  }
+
+  // whether the faces at a vertex form one fan
+  bool is_fan(int v) const
+  {
+    const int degree = vertex_begin[v + 1] - vertex_begin[v];
+    if(degree == 0)
+      return true;
+    const int start = vertex_corners[vertex_begin[v]];
+    int count = 1, c = start;
+    for(int o = opposite[previous(c)]; o >= 0; o = opposite[previous(c)])
+    {
+      if(o == start)
+        return count == degree;
+      c = o;
+      if(++count > degree)
+        return false;
+    }
+    c = start;
+    while(opposite[c] >= 0)
+    {
+      c = next(opposite[c]);
+      if(++count > degree)
+        return false;
+    }
+    return count == degree;
+  }
+
   void collect_corners(int number_of_vertices)
   {
     corner_face.resize(corner_vertex.size());
@@ -133,6 +152,7 @@ private:
       vertex_corners[cursor[corner_vertex[c]]++] = c;
   }
 
+  template <typename ConcurrencyTag>
   void match_opposites()
   {
     const int n = int(corner_vertex.size());
@@ -140,12 +160,8 @@ private:
     for(int c = 0; c < n; ++c)
       targets[c] = target(c);
     opposite.assign(n, -1);
-    for(int c = 0; c < n; ++c)
-    {
+    const int refused = find_first<ConcurrencyTag>(n, [&](int c) {
       const int s = source(c), t = targets[c];
-      if(s == t)
-        throw Invalid_input("face " + std::to_string(corner_face[c]) + " has an edge from vertex " +
-                            std::to_string(s) + " to itself");
       int matches = 0, twins = 0;
       for(int k = vertex_begin[t]; k < vertex_begin[t + 1]; ++k)
         if(targets[vertex_corners[k]] == s)
@@ -155,11 +171,21 @@ private:
         }
       for(int k = vertex_begin[s]; k < vertex_begin[s + 1]; ++k)
         twins += targets[vertex_corners[k]] == t;
-      if(matches > 1 || twins > 1)
-        throw Invalid_input("the edge between vertices " + std::to_string(s) + " and " +
-                            std::to_string(t) + " (face " + std::to_string(corner_face[c]) +
-                            ") is not manifold");
-    }
+      return s == t || matches > 1 || twins > 1;
+    });
+    if(refused >= 0)
+      refuse(refused);
+  }
+
+  void refuse(int c) const
+  {
+    const int s = source(c), t = target(c);
+    const std::string face = std::to_string(corner_face[c]);
+    if(s == t)
+      throw Invalid_input("face " + face + " has an edge from vertex " + std::to_string(s) +
+                          " to itself");
+    throw Invalid_input("the edge between vertices " + std::to_string(s) + " and " +
+                        std::to_string(t) + " (face " + face + ") is not manifold");
   }
 
   void mark_border_vertices()

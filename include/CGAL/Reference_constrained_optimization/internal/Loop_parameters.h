@@ -23,7 +23,7 @@ struct Loop_parameters
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 2e-3;
-  double movement_tolerance = 0.003; // part of the mean edge length at a vertex
+  double movement_tolerance = 0.01; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last
@@ -87,7 +87,7 @@ inline int on_surface_patch_size(const Selection_parameters& selection, const In
   if(selection.maximum_patch_size > 0)
     return selection.maximum_patch_size;
   const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
-  const double smallest = 4000, largest = 20000, number = 4;
+  const double smallest = 4000, largest = 20000, number = 8;
   return triangles_to_faces(mesh, (std::min)(largest, (std::max)(smallest, triangles / number)));
 }
 

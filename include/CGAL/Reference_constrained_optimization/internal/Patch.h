@@ -98,12 +98,17 @@ public:
     Patch patch;
     patch.faces = faces;
     std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
+    begins.reserve(faces.size() + 1);
     for(const int f : faces)
     {
       m_face_stamp[f] = m_stamp;
       m_local_corner[f] = begins.back();
       begins.push_back(begins.back() + mesh.degree(f));
     }
+    corners.reserve(begins.back());
+    opposites.reserve(begins.back());
+    patch.outside_face.reserve(begins.back());
+    patch.placed.reserve(begins.back() / 4); // most often enough: fewer copies
     for(const int f : faces)
     {
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)

@@ -20,33 +20,64 @@ namespace internal {
 
 // Where another visit is worth its time: only where vertices moved last time.
 
-// the faces at the given vertices, and `rings` rings around them
-inline std::vector<char>
-faces_around(const Indexed_mesh& mesh, const std::vector<char>& is_center, int rings)
+// Few of many are best followed one by one, many are best looked for, which several threads can do.
+inline bool are_few(const std::vector<char>& is_in)
 {
-  std::vector<char> is_active(mesh.number_of_faces(), 0);
-  std::vector<char> vertex_is_active = is_center;
-  for(int ring = 0; ring <= rings; ++ring)
-  {
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(vertex_is_active[mesh.corner_vertex[c]])
-        is_active[mesh.corner_face[c]] = 1;
-    if(ring == rings)
-      break;
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(is_active[mesh.corner_face[c]])
-        vertex_is_active[mesh.corner_vertex[c]] = 1;
-  }
-  return is_active;
+  const auto number = std::count(is_in.begin(), is_in.end(), char(1));
+  return std::size_t(number) < is_in.size() / 8;
 }
 
-inline std::vector<char> vertices_of(const Indexed_mesh& mesh, const std::vector<char>& faces)
+// the vertices of the given faces
+template <typename ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<char> vertices_of(const Indexed_mesh& mesh, const std::vector<char>& is_in)
 {
   std::vector<char> result(mesh.number_of_vertices(), 0);
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-    if(faces[mesh.corner_face[c]])
-      result[mesh.corner_vertex[c]] = 1;
+  if(are_few(is_in))
+  {
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+      if(is_in[f])
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          result[mesh.corner_vertex[c]] = 1;
+    return result;
+  }
+  for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
+    for(int v = begin; v < end; ++v)
+      for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1] && !result[v]; ++k)
+        result[v] = is_in[mesh.corner_face[mesh.vertex_corners[k]]];
+  });
   return result;
+}
+
+// the faces at the given vertices
+template <typename ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<char> faces_at(const Indexed_mesh& mesh, const std::vector<char>& is_in)
+{
+  std::vector<char> result(mesh.number_of_faces(), 0);
+  if(are_few(is_in))
+  {
+    for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      if(is_in[v])
+        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+          result[mesh.corner_face[mesh.vertex_corners[k]]] = 1;
+    return result;
+  }
+  for_each_block<ConcurrencyTag>(mesh.number_of_faces(), [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1] && !result[f]; ++c)
+        result[f] = is_in[mesh.corner_vertex[c]];
+  });
+  return result;
+}
+
+// the faces at the given vertices, and `rings` rings around them
+template <typename ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<char>
+faces_around(const Indexed_mesh& mesh, const std::vector<char>& is_center, int rings)
+{
+  std::vector<char> faces = faces_at<ConcurrencyTag>(mesh, is_center);
+  for(int ring = 0; ring < rings; ++ring)
+    faces = faces_at<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, faces));
+  return faces;
 }
 
 // the largest density of the elements of a face
@@ -172,15 +203,17 @@ void keep_near_bad(const Optimization_state& state,
 }
 
 // the mean density of the better half of the elements
-template <typename Density>
+template <typename ConcurrencyTag, typename Density>
 double lower_half_mean(const Optimization_state& state, const Density& density)
 {
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
   std::vector<double> densities(state.elements.size());
-  for(int e = 0; e < state.elements.size(); ++e)
-    densities[e] = element_energy(density, state.elements[e], vertex);
-  std::sort(densities.begin(), densities.end());
+  for_each_block<ConcurrencyTag>(int(densities.size()), [&](int begin, int end, int) {
+    for(int e = begin; e < end; ++e)
+      densities[e] = element_energy(density, state.elements[e], vertex);
+  });
   const std::size_t half = densities.size() / 2 + 1;
+  std::nth_element(densities.begin(), densities.begin() + (half - 1), densities.end());
   double sum = 0;
   for(std::size_t i = 0; i < half; ++i)
     sum += densities[i];

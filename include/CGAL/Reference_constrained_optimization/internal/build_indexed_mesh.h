@@ -32,7 +32,9 @@ struct Mesh_copy
 // Reads a face graph. Throws Invalid_input, naming the element, for: no face, a coordinate that is
 // not finite, a face of more than four (or, if so wanted, three) vertices, an edge or a vertex that
 // is not manifold. `name` is what the message calls the mesh.
-template <typename FaceGraph, typename VertexPointMap>
+template <typename ConcurrencyTag = CGAL::Sequential_tag,
+          typename FaceGraph,
+          typename VertexPointMap>
 Mesh_copy read_face_graph(const FaceGraph& g, const VertexPointMap& vpm, const std::string& name)
 {
   typedef typename boost::graph_traits<FaceGraph>::vertex_descriptor vertex_descriptor;
@@ -68,13 +70,13 @@ Mesh_copy read_face_graph(const FaceGraph& g, const VertexPointMap& vpm, const s
     throw Invalid_input(name + ": the mesh has no face");
   try
   {
-    copy.mesh = Indexed_mesh(std::move(begins), std::move(corners), n);
+    copy.mesh = Indexed_mesh(std::move(begins), std::move(corners), n, ConcurrencyTag());
   }
   catch(const Invalid_input& e)
   {
     throw Invalid_input(name + ": " + e.what());
   }
-  const int v = copy.mesh.find_nonmanifold_vertex();
+  const int v = copy.mesh.find_nonmanifold_vertex<ConcurrencyTag>();
   if(v >= 0)
     throw Invalid_input(name + ": vertex " + std::to_string(v) + " is not manifold");
   return copy;

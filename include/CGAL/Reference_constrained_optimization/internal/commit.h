@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/patch_solver.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -15,51 +16,53 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // folds of the edges between the patch and faces outside it, as the state is now
-inline int boundary_folds(const Optimization_state& state, const Patch& patch)
+inline int boundary_folds(const Optimization_state& state, const Solved_patch& s)
 {
-  const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
   int count = 0;
-  for(std::size_t c = 0; c < patch.outside_face.size(); ++c)
-    if(patch.outside_face[c] >= 0)
-      count += is_folded(face_normal(mesh, vertex, patch.faces[patch.polygons.corner_face[c]]),
-                         face_normal(mesh, vertex, patch.outside_face[c]));
+  for(const std::array<int, 2>& faces : s.boundary)
+    count += is_folded(face_normal(state.mesh, vertex, faces[0]),
+                       face_normal(state.mesh, vertex, faces[1]));
   return count;
 }
 
-// swaps the free vertices of a patch with those of the state
+// swaps some vertices of a patch, given by their local indices, with those of the state
 inline void
-exchange(Optimization_state& state, const Patch& patch, std::vector<Placed_vertex>& placed)
+exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& local_vertices)
 {
-  for(std::size_t i = 0; i < patch.vertices.size(); ++i)
-    if(patch.is_free[i])
-      std::swap(state.vertices[patch.vertices[i]], placed[i]);
+  for(const int i : local_vertices)
+    std::swap(state.vertices[s.patch.vertices[i]], s.placed[i]);
 }
 
-// Applies an accepted patch. Another patch of the round may have moved faces across its boundary
-// since it was judged: what folds there is counted anew. Returns whether the patch stays; its
-// `placed` then holds the old vertices.
-inline bool commit(Optimization_state& state, Solved_patch& s)
+// Decides whether an accepted patch stays. Another patch of the round may have moved faces across its
+// boundary since it was judged: what folds there is counted anew. Only the vertices that other patches
+// see are exchanged; `commit_inside()` has to follow if it stays.
+inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)
-    return false;
-  const Patch& patch = s.patch;
-  const int folds_before = boundary_folds(state, patch);
-  exchange(state, patch, s.placed);
+    return;
+  const int folds_before = boundary_folds(state, s);
+  exchange(state, s, s.outer_vertices);
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
   const int change =
-    after.inner_defects - before.inner_defects + boundary_folds(state, patch) - folds_before;
+    after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
   const bool is_better = change < 0 || (change == 0 && after.energy < before.energy);
   if(!is_better && !s.decision.is_final)
   {
-    exchange(state, patch, s.placed);
+    exchange(state, s, s.outer_vertices);
     s.decision.accepted = false;
     s.decision.after = s.decision.before;
-    return false;
+    return;
   }
   s.decision.after.boundary_defects =
     before.boundary_defects + change - (after.inner_defects - before.inner_defects);
-  return true;
+}
+
+// Exchanges all other vertices of a patch that stays; its `placed` then holds the old ones. Patches of
+// a round may be committed at the same time.
+inline void commit_inside(Optimization_state& state, Solved_patch& s)
+{
+  exchange(state, s, s.inner_vertices);
 }
 
 } // namespace internal

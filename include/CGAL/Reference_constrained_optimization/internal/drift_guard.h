@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -84,31 +85,69 @@ public:
       }
   }
 
-  void take_back(const Indexed_mesh& mesh, const Patch& patch)
+  // what a solved patch knows of its samples
+  struct Known
+  {
+    int face = -1; // of R
+    double distance = 0;
+  };
+  typedef std::vector<std::pair<std::size_t, Known>> Known_samples;
+
+  Known_samples samples_of(const Indexed_mesh& mesh, const Patch& patch) const
+  {
+    Known_samples result;
+    if(!is_on() || patch.is_split)
+      return result;
+    for(int s = 0; s < int(patch.samples.size()); ++s)
+      if(sample_of(patch, s / 4, s % 4) == s)
+        result.push_back({known_sample(mesh, patch, s),
+                          {patch.samples[s].face, patch.samples[s].distance}});
+    return result;
+  }
+
+  // patches without a common face may return at the same time
+  void take_back(const std::vector<int>& faces,
+                 const std::vector<Patch::Guest>& guests,
+                 const Known_samples& samples)
   {
     if(!is_on())
       return;
-    for(const int f : patch.faces)
+    for(const int f : faces)
       m_first[f] = -1;
-    for(const Patch::Guest& g : patch.guests)
-      settle(g.vertex, patch.faces[g.polygon], g.distance);
-    if(!patch.is_split)
-      for(int t = 0; t < patch.triangles().number_of_faces(); ++t)
-        for(int i = 0; i < 4; ++i)
-          if(sample_of(patch, t, i) == 4 * t + i)
-          {
-            const Patch::Sample& sample = patch.samples[4 * t + i];
-            m_known[known_sample(mesh, patch, 4 * t + i)] = {sample.face, sample.distance};
-          }
+    for(const Patch::Guest& g : guests)
+      settle(g.vertex, faces[g.polygon], g.distance);
+    for(const auto& s : samples)
+      m_known[s.first] = s.second;
+  }
+
+  // what is known of some faces, to be restored together
+  struct Snapshot
+  {
+    std::vector<int> faces;
+    std::vector<Patch::Guest> guests; // each with the position of its face in the list
+    Known_samples samples;
+  };
+
+  void save(const Indexed_mesh& mesh, int f, Snapshot& snapshot) const
+  {
+    if(!is_on())
+      return;
+    for(int r = m_first[f]; r >= 0; r = m_next[r])
+      snapshot.guests.push_back({r, int(snapshot.faces.size()), m_distance[r], 0});
+    snapshot.faces.push_back(f);
+    if(!m_known.empty())
+      for(int i = 0; i < 4; ++i)
+      {
+        const std::size_t s = known_sample(mesh, f, i);
+        snapshot.samples.push_back({s, m_known[s]});
+      }
+  }
+  void restore(const Snapshot& snapshot)
+  {
+    take_back(snapshot.faces, snapshot.guests, snapshot.samples);
   }
 
 private:
-  struct Known
-  {
-    int face;
-    double distance;
-  };
-
   void settle(int r, int face, double distance)
   {
     m_distance[r] = distance;
@@ -117,13 +156,14 @@ private:
   }
 
   // the two triangles of an edge share its sample
-  static int known_sample(const Indexed_mesh& mesh, const Patch& patch, int s)
+  static std::size_t known_sample(const Indexed_mesh& mesh, int f, int i)
   {
-    const int f = patch.faces[s / 4], i = s % 4;
-    if(i == 3)
-      return 4 * f + 3;
-    const int c = 3 * f + i, o = mesh.opposite[c];
-    return o >= 0 && o < c ? 4 * (o / 3) + o % 3 : 4 * f + i;
+    const int c = 3 * f + i, o = i < 3 ? mesh.opposite[c] : -1;
+    return o >= 0 && o < c ? 4 * std::size_t(o / 3) + o % 3 : 4 * std::size_t(f) + i;
+  }
+  static std::size_t known_sample(const Indexed_mesh& mesh, const Patch& patch, int s)
+  {
+    return known_sample(mesh, patch.faces[s / 4], s % 4);
   }
 
   template <typename ConcurrencyTag>
@@ -183,7 +223,7 @@ private:
     const int n = mesh.number_of_faces();
     const bool is_split = mesh.number_of_corners() != 3 * n;
     if(!is_split)
-      m_known.assign(4 * std::size_t(n), {-1, 0.});
+      m_known.assign(4 * std::size_t(n), Known());
     std::vector<double> largest(n, 0);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)

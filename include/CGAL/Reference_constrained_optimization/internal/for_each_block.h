@@ -9,6 +9,7 @@
 
 #ifdef CGAL_LINKED_WITH_TBB
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #endif
 
 #include <type_traits>
@@ -42,6 +43,21 @@ void for_each_block(int n, const Work& work)
 #endif
   for(int block = 0; block < blocks; ++block)
     run(block);
+}
+
+// calls both; they must not depend on one another
+template <typename ConcurrencyTag, typename First, typename Second>
+void call_both(const First& first, const Second& second)
+{
+#ifdef CGAL_LINKED_WITH_TBB
+  if(std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value)
+  {
+    tbb::parallel_invoke(first, second);
+    return;
+  }
+#endif
+  first();
+  second();
 }
 
 } // namespace internal

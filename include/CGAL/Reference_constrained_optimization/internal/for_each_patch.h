@@ -8,10 +8,13 @@
 #include <CGAL/tags.h>
 
 #ifdef CGAL_LINKED_WITH_TBB
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 #endif
 
+#include <atomic>
 #include <cstddef>
 
 namespace CGAL {
@@ -19,7 +22,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Calls work(workspace, i) for i in [0, n), each thread with a workspace of its own made by
-// `make_workspace`. The calls must not depend on one another.
+// `make_workspace`. The calls must not depend on one another. They begin in the order of i: with the
+// longest first no thread is left with a long one in the end.
 template <typename ConcurrencyTag, typename Workspace>
 class For_each_patch
 {
@@ -51,7 +55,14 @@ public:
   template <typename Work>
   void operator()(std::size_t n, const Work& work)
   {
-    tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) { work(m_workspaces.local(), i); });
+    std::atomic<std::size_t> next(0);
+    tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, n, 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for(std::size_t i = range.begin(); i < range.end(); ++i)
+          work(m_workspaces.local(), next++);
+      },
+      tbb::simple_partitioner());
   }
 
 private:

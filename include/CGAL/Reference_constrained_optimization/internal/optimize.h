@@ -72,10 +72,11 @@ Result optimize(PolygonMesh& mesh,
     parameters::get_parameter(own_np_reference, CGAL::internal_np::vertex_point),
     CGAL::get_const_property_map(CGAL::vertex_point, reference));
 
-  const Mesh_copy copy = read_face_graph(mesh, vpm, "mesh");
-  Reference_surface surface(is_own_reference(mesh, reference, own_np, own_np_reference)
-                              ? copy
-                              : read_face_graph(reference, reference_vpm, "reference"));
+  const Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
+  Reference_surface surface(
+    is_own_reference(mesh, reference, own_np, own_np_reference)
+      ? copy
+      : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference"));
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
                                surface_area(copy.mesh, copy.points), surface.area());

@@ -73,7 +73,7 @@ public:
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
-    const double typical = lower_half_mean(m_state, m_density);
+    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
     m_cap = 10 * typical;
     m_rest_energy = rest_energy(m_state, m_density);
     m_limits.worst = before.worst;
@@ -100,7 +100,7 @@ public:
         Drift_barrier(drift_weight * m_rest_energy / triangles));
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
-    m_is_active = faces_around(mesh, m_state.is_free, 0);
+    m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
     m_result.status = Status::iteration_limit;
@@ -146,7 +146,7 @@ private:
       if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
-          m_is_active = faces_around(mesh, m_moved, 1);
+          m_is_active = faces_around<ConcurrencyTag>(mesh, m_moved, 1);
       }
       else if(!divide_further())
       {
@@ -175,19 +175,31 @@ private:
   {
     if(!m_parameters.use_on_surface_steps)
       return visit(m_is_active, m_selection);
+    std::vector<char> is_wanted;
+    std::vector<std::vector<int>> patches;
+    // the second patches do not hang on what the first ones do
+    call_both<ConcurrencyTag>([&]() { is_wanted = faces_to_flatten(); },
+                              [&]() { patches = divide(m_is_active, m_partition); });
+    return visit(is_wanted, m_selection) && may_go_on() &&
+           solve_round(patches, Moves::on_surface, m_density);
+  }
+
+  // the active faces that are turned over or folded or in bad regions, and those around them
+  std::vector<char> faces_to_flatten() const
+  {
     const Indexed_mesh& mesh = m_state.mesh;
-    // sharp triangles are a matter of their vertices, stretched ones of what is around them
-    const int smallest_region = m_prizes_angles ? 20 : 1;
+    // sharp triangles are a matter of their vertices, stretched ones of what is around them; in a fine
+    // mesh what was one triangle is many
+    const int smallest_region = m_prizes_angles ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     const std::vector<char> is_bad =
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
-    is_wanted = faces_around(mesh, vertices_of(mesh, is_wanted), 2);
+    is_wanted = faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_wanted), 2);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
-    return visit(is_wanted, m_selection) &&
-           visit_once(m_is_active, m_partition, Moves::on_surface, m_density);
+    return is_wanted;
   }
 
   // What is left to gain is what the energy has above that of elements that are all at rest.
@@ -273,13 +285,17 @@ private:
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    Drift_guard drift_guard;
+    Drift_guard::Snapshot snapshot;
     std::vector<std::pair<int, Placed_vertex>> saved; // vertices, before they were in a patch
     std::vector<char> is_saved(m_state.vertices.size(), 0);
+    std::vector<char> face_is_saved(m_state.mesh.number_of_faces(), 0);
     const auto forget = [&]() {
       for(const std::pair<int, Placed_vertex>& v : saved)
         is_saved[v.first] = 0;
       saved.clear();
+      for(const int f : snapshot.faces)
+        face_is_saved[f] = 0;
+      snapshot = Drift_guard::Snapshot();
     };
     using Stage = Finishing_stage<ConcurrencyTag>;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
@@ -294,6 +310,10 @@ private:
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
           const Indexed_mesh& mesh = m_state.mesh;
           for(const int f : faces.list)
+          {
+            if(!face_is_saved[f])
+              m_drift_guard.save(mesh, f, snapshot);
+            face_is_saved[f] = 1;
             for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
             {
               const int v = mesh.corner_vertex[c];
@@ -301,20 +321,18 @@ private:
                 saved.emplace_back(v, m_state.vertices[v]);
               is_saved[v] = 1;
             }
+          }
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
           return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
                                Angle_barrier_density<Density>(m_density, goal.target));
         },
-        [&]() {
-          forget();
-          drift_guard = m_drift_guard;
-        },
+        forget,
         [&]() {
           for(const std::pair<int, Placed_vertex>& v : saved)
             m_state.vertices[v.first] = v.second;
+          m_drift_guard.restore(snapshot);
           forget();
-          m_drift_guard = drift_guard;
         });
     m_limits = limits;
     m_is_finishing = false;
@@ -358,10 +376,16 @@ private:
   {
     if(!may_go_on())
       return false;
+    return solve_round(divide(is_wanted, partition), moves, density);
+  }
+
+  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted,
+                                       Patch_partition& partition)
+  {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
-    return solve_round(patches, moves, density);
+    return patches;
   }
 
   // the same in small patches, of which each is a region of wanted faces if that is not too large
@@ -407,25 +431,54 @@ private:
       if(!stops)
         solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
     });
-    for(Solved_patch& s : solved)
-      if(!s.patch.faces.empty())
-      {
-        if(commit(m_state, s))
-          update(s);
-        report(s);
-      }
+    commit(solved);
     m_visitor.on_round_end();
     if(stops && !is_sequential)
       m_result.status = Status::time_limit;
     return !stops;
   }
 
-  // what follows from a patch that stays; `s.placed` holds its old vertices
+  // commits the patches of a round and reports them; those that were reported stay also when the
+  // visitor throws
+  void commit(std::vector<Solved_patch>& solved)
+  {
+    std::size_t number = 0;
+    const auto commit_insides = [&]() {
+      m_for_each(number, [&](Patch_solver&, std::size_t i) {
+        if(solved[i].decision.accepted)
+        {
+          commit_inside(m_state, solved[i]);
+          update(solved[i]);
+        }
+        solved[i].drop_vertices();
+      });
+    };
+    try
+    {
+      while(number < solved.size())
+      {
+        Solved_patch& s = solved[number++];
+        if(s.number_of_faces == 0)
+          continue;
+        commit_boundary(m_state, s);
+        report(s);
+      }
+    }
+    catch(...)
+    {
+      commit_insides();
+      throw;
+    }
+    commit_insides();
+  }
+
+  // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
+  // vertices
   void update(const Solved_patch& s)
   {
     const Patch& patch = s.patch;
-    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
-      if(patch.is_free[i])
+    for(const std::vector<int>* vertices : {&s.outer_vertices, &s.inner_vertices})
+      for(const int i : *vertices)
       {
         const int v = patch.vertices[i];
         const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
@@ -435,13 +488,13 @@ private:
     for(const int f : patch.faces)
       m_geometry.set(m_state.mesh, f,
                      [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(m_state.mesh, patch);
+    m_drift_guard.take_back(patch.faces, patch.guests, s.samples);
   }
 
   void report(const Solved_patch& s)
   {
     ++m_result.number_of_patches;
-    m_result.sum_of_patch_sizes += double(s.patch.faces.size());
+    m_result.sum_of_patch_sizes += double(s.number_of_faces);
     m_result.times.flattening += s.flattening_time;
     m_result.times.optimization += s.optimization_time;
     m_result.times.acceptance += s.acceptance_time;
@@ -455,20 +508,21 @@ private:
     }
     m_result.number_of_accepted_patches += s.decision.accepted;
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
+    if(s.was_tried && !s.is_flattened)
+    {
+      m_taken += s.taken * s.number_of_free_vertices;
+      m_could_move += s.number_of_free_vertices;
+    }
+    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
+
     Patch_report report;
-    report.number_of_faces = s.patch.faces.size();
+    report.number_of_faces = s.number_of_faces;
     report.energy_before = s.decision.before.energy;
     report.energy_after = s.decision.after.energy;
     report.defects_before = std::size_t(s.decision.before.defects());
     report.defects_after = std::size_t(s.decision.after.defects());
     report.accepted = s.decision.accepted;
     report.is_finishing = m_is_finishing;
-    if(s.was_tried && !s.is_flattened)
-    {
-      m_taken += s.taken * s.patch.number_of_free_vertices;
-      m_could_move += s.patch.number_of_free_vertices;
-    }
-    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
     m_visitor.on_patch_end(report);
   }
 

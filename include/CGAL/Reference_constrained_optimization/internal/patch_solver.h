@@ -12,9 +12,11 @@
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -24,10 +26,15 @@ namespace internal {
 // how a patch is moved
 enum class Moves { flattened, on_surface, by_search };
 
-// what is known of a patch after it was solved
+// What is known of a patch after it was solved. All patches of a round are kept until it ends: what
+// only the solver needs is dropped.
 struct Solved_patch
 {
-  Patch patch;
+  Patch patch;                              // its faces, vertices and guests
+  Drift_guard::Known_samples samples;
+  std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
+  // the free vertices, in local indices: those of faces at the boundary, and the others
+  std::vector<int> outer_vertices, inner_vertices;
   Acceptance_test::Decision decision;
   std::vector<Placed_vertex> placed;
   Flattening_path path = Flattening_path::failed;
@@ -37,6 +44,18 @@ struct Solved_patch
   double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
+  std::size_t number_of_faces = 0, number_of_free_vertices = 0; // of the patch; 0: was not solved
+
+  // frees what is of no use after the commit
+  void drop_vertices()
+  {
+    patch = Patch();
+    samples = Drift_guard::Known_samples();
+    boundary = std::vector<std::array<int, 2>>();
+    outer_vertices = std::vector<int>();
+    inner_vertices = std::vector<int>();
+    placed = std::vector<Placed_vertex>();
+  }
 };
 
 // Takes one patch through the steps of the paper: flatten, optimize, map back, accept; or moves it
@@ -68,7 +87,10 @@ public:
     s.patch = m_builder.build(faces, state);
     s.acceptance_time = seconds_since(start);
     if(s.patch.number_of_free_vertices == 0)
+    {
+      finish(state, drift_guard, s);
       return;
+    }
     s.was_tried = true;
     drift_guard.invite(state, s.patch);
     s.is_flattened = moves == Moves::flattened;
@@ -92,10 +114,41 @@ public:
       improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
               limits, s);
     }
-    s.placed = s.patch.placed;
+    finish(state, drift_guard, s);
   }
 
 private:
+  // notes what the commit needs, and drops what it does not
+  static void
+  finish(const Optimization_state& state, const Drift_guard& drift_guard, Solved_patch& s)
+  {
+    s.number_of_faces = s.patch.faces.size();
+    s.number_of_free_vertices = std::size_t(s.patch.number_of_free_vertices);
+    Patch kept;
+    if(s.decision.accepted)
+    {
+      const Indexed_mesh& mesh = s.patch.polygons;
+      std::vector<char> is_outer(s.patch.vertices.size(), 0);
+      for(int c = 0; c < mesh.number_of_corners(); ++c)
+        if(s.patch.outside_face[c] >= 0)
+        {
+          const int f = mesh.corner_face[c];
+          s.boundary.push_back({{s.patch.faces[f], s.patch.outside_face[c]}});
+          for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
+            is_outer[mesh.corner_vertex[d]] = 1;
+        }
+      for(std::size_t v = 0; v < is_outer.size(); ++v)
+        if(s.patch.is_free[v])
+          (is_outer[v] ? s.outer_vertices : s.inner_vertices).push_back(int(v));
+      s.samples = drift_guard.samples_of(state.mesh, s.patch);
+      kept.faces = std::move(s.patch.faces);
+      kept.vertices = std::move(s.patch.vertices);
+      kept.guests = std::move(s.patch.guests);
+      s.placed = std::move(s.patch.placed);
+    }
+    s.patch = std::move(kept);
+  }
+
   // what is prepared once serves several proposals
   template <typename Mover, typename Density>
   void improve(Mover& mover,
