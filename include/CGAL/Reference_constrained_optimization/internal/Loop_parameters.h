@@ -22,8 +22,8 @@ struct Loop_parameters
   std::size_t number_of_iterations = 30;
   double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
   // decrease per iteration, relative to what the energy has above that of elements at rest
-  double energy_tolerance = 2e-3;
-  double movement_tolerance = 0.01; // part of the mean edge length at a vertex
+  double energy_tolerance = 4e-3;
+  double movement_tolerance = 0.003; // part of the mean edge length at a vertex
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last

@@ -68,7 +68,8 @@ public:
   double optimization_time() const { return m_optimization_time; }
 
 private:
-  // what a vertex looks at: its elements, and whether its faces and their edges are turned or folded
+  // what a vertex looks at: its elements and the drift around it, and whether its faces and their edges
+  // are turned or folded, or further from R than they may be
   struct Star_measure
   {
     double energy = 0;
@@ -111,6 +112,47 @@ private:
     return count;
   }
 
+  // the drift of the faces around a vertex
+  Star_measure drift(const Patch& patch, int v) const
+  {
+    Star_measure m;
+    if(patch.samples.empty())
+      return m;
+    const Indexed_mesh& mesh = patch.triangles();
+    const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
+    const auto add = [&](double distance, double bound) {
+      m.energy += patch.barrier.value(distance, bound);
+      m.defects += distance > Drift_barrier::last_part * bound;
+    };
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int t = mesh.corner_face[mesh.vertex_corners[k]];
+      for(int i = 0; i < 4; ++i)
+      {
+        const int s = sample_of(patch, t, i);
+        if(s < 0)
+          continue;
+        Patch::Sample sample = patch.samples[s];
+        locate_sample(patch, m_reference, vertex, s, sample);
+        add(sample.distance, patch.bound_of_triangle(s / 4));
+      }
+      for(const int g : m_guests[patch.polygon_of(t)])
+      {
+        Patch::Guest guest = patch.guests[g];
+        locate_guest(patch, m_reference, vertex, guest);
+        add(guest.distance, guest.bound);
+      }
+    }
+    return m;
+  }
+
+  void sort_guests(const Patch& patch)
+  {
+    m_guests.assign(patch.polygons.number_of_faces(), {});
+    for(std::size_t g = 0; g < patch.guests.size(); ++g)
+      m_guests[patch.guests[g].polygon].push_back(int(g));
+  }
+
   // the vertices of bad elements that may move, and those around them
   template <typename Density>
   std::vector<int> collect(const Patch& patch, const Density& density) const
@@ -140,6 +182,7 @@ private:
     const std::vector<int> vertices = collect(patch, density);
     const double first_reach = 0.3, last_reach = 0.01; // in mean edges at the vertex
     const int maximum_sweeps = 40;
+    sort_guests(patch);
     m_length.assign(patch.vertices.size(), 0);
     m_reach.assign(vertices.size(), first_reach);
     bool has_moved = false, goes_on = !vertices.empty();
@@ -192,7 +235,9 @@ private:
   {
     const Placed_vertex here = m_placed[v];
     const Tangent_frame frame = tangent_frame(here.normal);
-    Star_measure best{energy(patch, density, v), defects(patch, v)};
+    Star_measure best = drift(patch, v);
+    best.energy += energy(patch, density, v);
+    best.defects += defects(patch, v);
     Placed_vertex best_place = here;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
@@ -204,10 +249,14 @@ private:
       Placed_vertex& there = m_placed[v];
       if(step_on_surface(m_reference, here, reach * (frame * Vector_2(d[0], d[1])), there))
       {
-        // defects are costly to count
+        // drift and defects are costly to measure
         Star_measure m{energy(patch, density, v), 0};
         if(m < best)
-          m.defects = defects(patch, v);
+        {
+          const Star_measure d = drift(patch, v);
+          m.energy += d.energy;
+          m.defects = d.defects + defects(patch, v);
+        }
         if(m < best)
         {
           best = m;
@@ -225,6 +274,7 @@ private:
   double m_bad = std::numeric_limits<double>::infinity();
   double m_sharp = 1;
   std::vector<Placed_vertex> m_placed;
+  std::vector<std::vector<int>> m_guests; // per polygon
   std::vector<double> m_length, m_reach;
   double m_optimization_time = 0;
 };

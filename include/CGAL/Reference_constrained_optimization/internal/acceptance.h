@@ -112,6 +112,8 @@ public:
         cut_offenders(patch);
       else
         m_steps.cut_all(patch, 0.5);
+      if(m_steps.has_stopped(patch))
+        break;
       forget_offenders();
     }
     decision.after = decision.before;
@@ -396,12 +398,12 @@ private:
     for(const int v : m_offenders)
     {
       ++m_offences[v];
-      m_rings[v] = m_offences[v] / 4;
+      m_rings[v] = m_offences[v] / 2;
     }
     for(std::size_t i = 0; i < m_offenders.size(); ++i)
     {
       const int v = m_offenders[i], rings = m_rings[v];
-      m_steps.cut(patch, v, m_offences[v] < 8 ? 0.4 : 0.);
+      m_steps.cut(patch, v, m_offences[v] < 4 ? 0.4 : 0.);
       if(rings == 0)
         continue;
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)

@@ -14,9 +14,8 @@ namespace internal {
 // The unit direction in which a point of a crease of R may go and stay on it: of the two at a vertex,
 // the one that agrees better with `wanted`. Zero if the point is not on a crease, or where creases
 // end or meet.
-inline Vector_3 crease_direction(const Reference_surface& reference,
-                                 const Surface_point& p,
-                                 const Vector_3& wanted)
+inline Vector_3
+crease_direction(const Reference_surface& reference, const Surface_point& p, const Vector_3& wanted)
 {
   const double cosine = 0.9; // of the angle between the normals on both sides
   const Indexed_mesh& mesh = reference.mesh();
@@ -30,7 +29,8 @@ inline Vector_3 crease_direction(const Reference_surface& reference,
     return a.dot(b) < cosine * a.norm() * b.norm();
   };
   const auto along = [&](int c) {
-    return Vector_3((reference.points()[mesh.target(c)] - reference.points()[mesh.source(c)]).normalized());
+    return Vector_3(
+      (reference.points()[mesh.target(c)] - reference.points()[mesh.source(c)]).normalized());
   };
   const int begin = mesh.face_begin[p.face];
   int largest = 0;

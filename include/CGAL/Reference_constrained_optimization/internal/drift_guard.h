@@ -100,8 +100,8 @@ public:
       return result;
     for(int s = 0; s < int(patch.samples.size()); ++s)
       if(sample_of(patch, s / 4, s % 4) == s)
-        result.push_back({known_sample(mesh, patch, s),
-                          {patch.samples[s].face, patch.samples[s].distance}});
+        result.push_back(
+          {known_sample(mesh, patch, s), {patch.samples[s].face, patch.samples[s].distance}});
     return result;
   }
 

@@ -129,7 +129,7 @@ public:
 
 private:
   static constexpr double degrees_per_radian = 57.295779513082320877;
-  static constexpr double smallest_step = 0.1, negligible = 0.01; // degrees
+  static constexpr double smallest_step = 0.03, negligible = 0.01; // degrees
 
   // What the mean lost on the way is partly won back while the minimum is only held.
   template <typename Visit, typename Save, typename Restore>

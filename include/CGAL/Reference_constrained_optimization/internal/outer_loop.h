@@ -92,11 +92,10 @@ public:
       m_parameters.drift_bound < 0
         ? 0.25 * (std::max)(m_state.reference.mean_edge_length(), mean_edge_length(mesh, points))
         : m_parameters.drift_bound;
-    // between the samples, and where the barrier gives way, it is a little more
-    const double held_part = 0.9, drift_weight = 0.1;
+    const double drift_weight = 0.1;
     if(std::isfinite(drift_bound))
       m_drift_guard.initialize<ConcurrencyTag>(
-        m_state, held_part * (std::max)(drift_bound, 1e-6 * m_state.reference.mean_edge_length()),
+        m_state, (std::max)(drift_bound, 1e-6 * m_state.reference.mean_edge_length()),
         Drift_barrier(drift_weight * m_rest_energy / triangles));
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);

@@ -30,7 +30,7 @@ enum class Moves { flattened, on_surface, by_search };
 // only the solver needs is dropped.
 struct Solved_patch
 {
-  Patch patch;                              // its faces, vertices and guests
+  Patch patch; // its faces, vertices and guests
   Drift_guard::Known_samples samples;
   std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
   // the free vertices, in local indices: those of faces at the boundary, and the others

@@ -36,6 +36,14 @@ public:
 
   const std::vector<double>& parts() const { return m_part; }
 
+  bool has_stopped(const Patch& patch) const
+  {
+    for(std::size_t v = 0; v < m_part.size(); ++v)
+      if(patch.is_free[v] && m_part[v] > 0)
+        return false;
+    return true;
+  }
+
   void cut(const Patch& patch, int v, double factor)
   {
     if(patch.is_free[v] && m_part[v] > 0)
