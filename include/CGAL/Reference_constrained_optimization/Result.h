@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_RESULT_H
 
 #include <cstddef>
+#include <limits>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
@@ -72,6 +73,15 @@ struct Result
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.
+
+  /// the bound that the drift barrier was set up with, in units of length of the points; infinite if
+  /// it was off.
+  double drift_bound = std::numeric_limits<double>::infinity();
+  /// how far mesh and reference were apart at the start, in units of length: the largest distance of
+  /// the middles of the mesh's edges and faces from the reference, and of the reference's vertices from
+  /// the mesh. 0 if the drift was not bounded; `drift()` measures it always, and more closely.
+  double initial_drift = 0;
+  double drift = 0; ///< the same at the end; no less than the true distance of any of these points.
 
   std::size_t conformal_flattenings = 0;     ///< flattenings accepted from the fast path (LSCM).
   std::size_t convex_border_flattenings = 0; ///< from the fall-back (convex border, then descent).

@@ -20,7 +20,7 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 30;
-  double drift_bound = -1; // a length; negative: 1.2 mean edge lengths of the coarser mesh
+  double drift_bound = -1; // a length; negative: see Outer_loop::initialize_drift_guard
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 4e-3;
   double movement_tolerance = 0.003; // part of the mean edge length at a vertex
@@ -57,8 +57,11 @@ inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
     mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
 }
 
-inline Selection_parameters sized(Selection_parameters selection, const Indexed_mesh& mesh)
+inline Selection_parameters sized(const Loop_parameters& parameters, const Indexed_mesh& mesh)
 {
+  Selection_parameters selection = parameters.selection;
+  // steps on the surface come by everywhere afterwards
+  selection.visits_all_well = !parameters.use_on_surface_steps;
   if(selection.maximum_patch_size == 0)
     selection.maximum_patch_size = patch_size(mesh, 4.5, 400);
   return selection;

@@ -31,18 +31,40 @@ class Drift_guard
 public:
   bool is_on() const { return !m_first.empty(); }
 
-  // the bound must be finite
+  // The bound must be finite. If it is `at_least` that, it is wide enough for steps to be allowed as
+  // far as the input is away.
   template <typename ConcurrencyTag>
-  void initialize(const Optimization_state& state, double bound, const Drift_barrier& barrier)
+  void initialize(const Optimization_state& state,
+                  double bound,
+                  bool at_least,
+                  const Drift_barrier& barrier)
   {
     m_barrier = barrier;
-    m_bound = bound;
     welcome_guests<ConcurrencyTag>(state);
-    measure_samples<ConcurrencyTag>(state);
+    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state);
+    const double guests = *std::max_element(m_distance.begin(), m_distance.end());
+    const double samples = *std::max_element(distances.begin(), distances.end());
+    m_initial_drift = (std::max)(guests, samples);
+    m_bound = at_least ? (std::max)(bound, m_initial_drift / Drift_barrier::last_part) : bound;
+    if(!at_least && guests > m_bound)
+      for(const double d : m_distance)
+        m_vertex_bounds.push_back((std::max)(m_bound, d));
+    if(!at_least && samples > m_bound)
+      for(const double d : distances)
+        m_face_bounds.push_back((std::max)(m_bound, d));
   }
 
-  // the largest distance of a sample when the guard was initialized
+  double bound() const { return m_bound; }
+
+  // the largest distance of a sample when the guard was initialized, and now
   double initial_drift() const { return m_initial_drift; }
+  template <typename ConcurrencyTag>
+  double drift(const Optimization_state& state)
+  {
+    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state);
+    return (std::max)(*std::max_element(m_distance.begin(), m_distance.end()),
+                      *std::max_element(distances.begin(), distances.end()));
+  }
 
   void invite(const Optimization_state& state, Patch& patch) const
   {
@@ -210,14 +232,11 @@ private:
     for(int r = 0; r < n; ++r)
       if(face[r] >= 0)
         settle(r, face[r], m_distance[r]);
-    m_initial_drift = *std::max_element(m_distance.begin(), m_distance.end());
-    if(m_initial_drift > m_bound)
-      for(int r = 0; r < n; ++r)
-        m_vertex_bounds.push_back((std::max)(m_bound, m_distance[r]));
   }
 
+  // the largest distance of the samples of each face
   template <typename ConcurrencyTag>
-  void measure_samples(const Optimization_state& state)
+  std::vector<double> measure_samples(const Optimization_state& state)
   {
     const Indexed_mesh& mesh = state.mesh;
     const int n = mesh.number_of_faces();
@@ -249,11 +268,7 @@ private:
           }
       }
     });
-    const double most = *std::max_element(largest.begin(), largest.end());
-    m_initial_drift = (std::max)(m_initial_drift, most);
-    if(most > m_bound)
-      for(int f = 0; f < n; ++f)
-        m_face_bounds.push_back((std::max)(m_bound, largest[f]));
+    return largest;
   }
 
   // where a mesh is its own reference there is nothing to look for

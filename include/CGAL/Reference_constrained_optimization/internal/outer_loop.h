@@ -52,7 +52,7 @@ public:
       m_result(result),
       m_start(start),
       m_random(parameters.random_seed),
-      m_selection(state.mesh, sized(parameters.selection, state.mesh)),
+      m_selection(state.mesh, sized(parameters, state.mesh)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
       m_partition(state.mesh,
                   on_surface_patch_size(parameters.selection, state.mesh),
@@ -68,7 +68,6 @@ public:
   void run()
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
     Global_measure before =
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
@@ -87,30 +86,38 @@ public:
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
-    // a mesh that is coarser than R is further away from it by nature
-    const double drift_bound =
-      m_parameters.drift_bound < 0
-        ? 0.25 * (std::max)(m_state.reference.mean_edge_length(), mean_edge_length(mesh, points))
-        : m_parameters.drift_bound;
-    const double drift_weight = 0.1;
-    if(std::isfinite(drift_bound))
-      m_drift_guard.initialize<ConcurrencyTag>(
-        m_state, (std::max)(drift_bound, 1e-6 * m_state.reference.mean_edge_length()),
-        Drift_barrier(drift_weight * m_rest_energy / triangles));
+    initialize_drift_guard();
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
     m_result.status = Status::iteration_limit;
-    if(!iterate_to_convergence(before))
-      return;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
-    if(revisits && revisit_worst() && finishes_angles())
+    if(iterate_to_convergence(before) && revisits && revisit_worst() && finishes_angles())
       finish_angles();
+    if(m_drift_guard.is_on())
+      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
   }
 
 private:
+  // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
+  // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
+  void initialize_drift_guard()
+  {
+    const double bound = m_parameters.drift_bound;
+    if(bound > (std::numeric_limits<double>::max)())
+      return;
+    const Indexed_mesh& mesh = m_state.mesh;
+    const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
+    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+    const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
+    m_drift_guard.initialize<ConcurrencyTag>(
+      m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest), bound < 0, barrier);
+    m_result.drift_bound = m_drift_guard.bound();
+    m_result.initial_drift = m_drift_guard.initial_drift();
+  }
+
   // false if cut short
   bool iterate_to_convergence(Global_measure before)
   {
@@ -176,10 +183,18 @@ private:
       return visit(m_is_active, m_selection);
     std::vector<char> is_wanted;
     std::vector<std::vector<int>> patches;
+    // what flattened patches do not mend at once they hardly ever do: they try more and more rarely
+    const bool flattens = !m_prizes_angles || m_result.number_of_iterations >= m_next_to_flatten;
+    if(flattens)
+      m_next_to_flatten = 2 * m_result.number_of_iterations + 1;
     // the second patches do not hang on what the first ones do
-    call_both<ConcurrencyTag>([&]() { is_wanted = faces_to_flatten(); },
-                              [&]() { patches = divide(m_is_active, m_partition); });
-    return visit(is_wanted, m_selection) && may_go_on() &&
+    call_both<ConcurrencyTag>(
+      [&]() {
+        if(flattens)
+          is_wanted = faces_to_flatten();
+      },
+      [&]() { patches = divide(m_is_active, m_partition); });
+    return (!flattens || visit(is_wanted, m_selection)) && may_go_on() &&
            solve_round(patches, Moves::on_surface, m_density);
   }
 
@@ -545,6 +560,7 @@ private:
   double m_taken = 0, m_could_move = 0; // in this iteration on the surface: of whole steps
   bool m_has_refused = false;
   bool m_is_finishing = false;
+  std::size_t m_next_to_flatten = 0; // iteration
   bool m_prizes_angles = false;
   double m_cap = 0;
   double m_rest_energy = 0;

@@ -27,6 +27,7 @@ struct Selection_parameters
   // As in the paper: the cheapest face comes next, and the proxy stays as it is at the seed. What is
   // over the threshold then ends the patch, for all that is left costs as much.
   bool grows_by_cost = false;
+  bool visits_all_well = true; // else a face may be at the boundary of the only patch that it is in
 };
 
 // Normals, areas and centroids of the faces, as the growing needs them.
@@ -138,7 +139,8 @@ public:
   // The faces of the last patch grown that are done with. That is every face outside the 2-ring of
   // its boundary (an edge of the mesh's own border is no boundary here), and always the seed. On
   // parts as thin as a few faces, where every disk is cut open, no face is ever outside: a face is
-  // also done with when all its vertices were inside two patches since `forget_visits()`.
+  // also done with when all its vertices were inside two patches since `forget_visits()`; and, unless
+  // all are to be visited well, when one of them is inside this one.
   std::vector<int> touched(const std::vector<int>& patch)
   {
     ++m_ring_stamp;
@@ -163,12 +165,19 @@ public:
           int& r = m_ring[m_mesh.corner_vertex[c]];
           r = (std::max)(r, 2 * m_ring_stamp - 1);
         }
+    const auto has_vertex_inside = [&](int f) {
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        if(m_ring[m_mesh.corner_vertex[c]] < 2 * m_ring_stamp)
+          return true;
+      return false;
+    };
     std::vector<int> result;
     for(const int f : patch)
     {
       if(!touches(f, 2 * m_ring_stamp))
         ++m_visits[f];
-      if(f == patch.front() || !touches(f, 2 * m_ring_stamp - 1) || m_visits[f] >= 2)
+      if(f == patch.front() || (!m_parameters.visits_all_well && has_vertex_inside(f)) ||
+         !touches(f, 2 * m_ring_stamp - 1) || m_visits[f] >= 2)
         result.push_back(f);
     }
     return result;
