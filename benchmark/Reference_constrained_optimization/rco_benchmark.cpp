@@ -13,6 +13,7 @@
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/certified_drift.h>
 
 #include <cstddef>
 #include <iostream>
@@ -26,12 +27,15 @@ typedef Mesh::Property_map<Mesh::Edge_index, bool> Edge_map;
 struct Settings : Common_settings
 {
   double exponent = 1;
-  double sharp_edges = 0; // degrees, 0 is off
+  double sharp_edges = 0;  // degrees, 0 is off
+  double drift_bound = -1; // in mean edges of the reference; negative: the library's default
+  int finishing = 1;
 };
 
 struct Options : Common_options<Settings>
 {
   std::string reference;
+  bool certifies = false;
 };
 
 const char* const usage =
@@ -48,12 +52,16 @@ Settings; each takes a value or a list such as 0.1,0.25,0.6:
   --tolerance T          relative decrease of the energy per iteration that ends the run
   --seed N               random seed
   --sharp-edges ANGLE    fix edges whose normals differ by more than ANGLE degrees; 0 is off
+  --drift-bound B        in mean edges of the reference; inf: none; a negative number: the default
+  --finishing B          0: without the finishing stage (default 1)
   --time-limit S         seconds
   --method LIST          ours; plain: without on-surface steps and finishing; paper: as the paper
                          describes it, every patch flattened from Tutte's embedding, optimized to
                          the end in the plane, and kept whatever comes back
 Options:
   --reference FILE       optimize against this mesh instead of the mesh's own shape
+  --certify              bound the distance of the surfaces from above, to a fiftieth of the mean edge
+                         of the reference (slow)
   --parallel             use all threads (if built with TBB)
   --check                verify what is promised (by ours and plain); exit code 1 if it does not
                          hold
@@ -82,6 +90,12 @@ Options parse(int argc, char* argv[])
                                     expand(o.runs, &Settings::exponent, option, value());
                                   else if(option == "--sharp-edges")
                                     expand(o.runs, &Settings::sharp_edges, option, value());
+                                  else if(option == "--drift-bound")
+                                    expand(o.runs, &Settings::drift_bound, option, value(), true);
+                                  else if(option == "--finishing")
+                                    expand(o.runs, &Settings::finishing, option, value());
+                                  else if(option == "--certify")
+                                    o.certifies = true;
                                   else if(option == "--reference")
                                     o.reference = value();
                                   else
@@ -122,6 +136,8 @@ std::string describe(const Settings& s, const Options& o)
     .add("seed", &Settings::seed)
     .add("sharp", &Settings::sharp_edges)
     .add("limit", &Settings::time_limit)
+    .add("drift", &Settings::drift_bound)
+    .add("finishing", &Settings::finishing)
     .add("method", &Settings::method)
     .text();
 }
@@ -137,11 +153,17 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
     CGAL::Polygon_mesh_processing::detect_sharp_edges(mesh, s.sharp_edges, is_constrained);
 
   Monotonicity_visitor visitor;
-  const auto np =
-    with_common_settings(CGAL::parameters::developability_threshold(s.developability), s, visitor)
-      .edge_is_constrained_map(is_constrained);
-  const RCO::Result r =
-    optimize(mesh, reference, RCO::Minimum_angle_energy(s.exponent), np, s.method, o.parallel);
+  const auto optimize_with = [&](const auto& own) {
+    return optimize(mesh, reference, RCO::Minimum_angle_energy(s.exponent),
+                    with_common_settings(own, s, visitor).edge_is_constrained_map(is_constrained),
+                    s.method, o.parallel);
+  };
+  const auto own = CGAL::parameters::developability_threshold(s.developability)
+                     .use_finishing_stage(s.finishing != 0);
+  const double edge_length = RCO::drift(reference, reference).reference_mean_edge_length;
+  const RCO::Result r = s.drift_bound < 0
+                          ? optimize_with(own)
+                          : optimize_with(own.drift_bound(s.drift_bound * edge_length));
   const double memory = peak_memory();
 
   const std::string base = base_name(file);
@@ -157,6 +179,10 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
   const RCO::Drift drift = RCO::drift(mesh, reference);
   row.add("drift_mesh_to_reference", "drift", drift.relative_mesh_to_reference(), 3);
   row.add("drift_reference_to_mesh", "drift", drift.relative_reference_to_mesh(), 3);
+  if(o.certifies)
+    row.add("certified_drift", "drift",
+            RCO::certified_drift(mesh, reference, 0.02 * edge_length).upper_bound() / edge_length,
+            3);
   add_flips_and_folds(row, {{r.initial_number_of_flips, r.initial_number_of_fold_edges},
                             {r.number_of_flips, r.number_of_fold_edges}});
   add_iterations(row, r);

@@ -105,12 +105,15 @@ namespace CGAL {
  *     \cgalParamDefault{`0.25`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{drift_bound}
- *     \cgalParamDescription{a length: no step may take a vertex of the reference further than this
- *                           away from the mesh, or further yet if it was beyond already; four
- *                           fifths of it where the mesh is not bad. Infinity switches the test
- *                           off}
+ *     \cgalParamDescription{how far mesh and reference may be apart, in units of length: a smooth
+ *                           barrier \f$ w\,u^2 / (1 - u) \f$ on the distances of the middles of edges
+ *                           and faces from the reference and of the reference's vertices from the
+ *                           mesh is added to the energy, and no step may take one of them beyond 1.3
+ *                           times the bound. What is beyond the bound on input has its own distance
+ *                           as its bound. Infinity switches the barrier off}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{1.2 mean edge lengths of the mesh or of the reference, whichever is larger}
+ *     \cgalParamDefault{a quarter of the reference's mean edge length, or, if that is larger, what
+ *                       allows as much as the input has (`Result::drift_bound` tells)}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
@@ -118,7 +121,7 @@ namespace CGAL {
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`2e-3`}
+ *     \cgalParamDefault{`4e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch that is flattened, and about the
@@ -126,7 +129,7 @@ namespace CGAL {
  *                           among these, so that some are larger}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
- *                       number of triangles, between 400 and 4000, the others a quarter of the
+ *                       number of triangles, between 400 and 4000, the others an eighth of the
  *                       mesh, between 4000 and 20000 triangles; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}

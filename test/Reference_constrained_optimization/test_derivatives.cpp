@@ -11,6 +11,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
 #include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/tangent_frame.h>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -605,8 +606,74 @@ void test_known_optimum(const Density& density, double best, const Matrix_2& map
   RCO_CHECK_NEAR(outcome.final_energy, energy, 1e-6 * energy);
 }
 
+void test_drift_barrier()
+{
+  const Scope scope("drift barrier");
+  const internal::Drift_barrier barrier(3);
+  for(const double bound : {0.01, 1., 7.})
+  {
+    double last = 0;
+    for(double part = 0.01; part < 4; part += 0.0371)
+    {
+      const double r = part * bound, h = 1e-5 * bound;
+      const internal::Drift_barrier::Derivatives d = barrier.derivatives(r, bound),
+                                                 low = barrier.derivatives(r - h, bound),
+                                                 high = barrier.derivatives(r + h, bound);
+      RCO_CHECK_NEAR(d.value, barrier.value(r, bound), 1e-12 * d.value);
+      RCO_CHECK_EQUAL(d.value > 0, internal::Drift_barrier::is_felt(r, bound));
+      RCO_CHECK_NEAR(d.first, (high.value - low.value) / (2 * h), 1e-4 * (d.first + 1 / bound));
+      RCO_CHECK_NEAR(d.second, (high.first - low.first) / (2 * h),
+                     1e-2 * (d.second + 1 / (bound * bound)));
+      RCO_CHECK(d.value >= last && d.second >= 0);
+      last = d.value;
+    }
+  }
+}
+
+// samples all over a patch, of which those at edges and faces and some of R's vertices are felt
+internal::Patch drifting_patch(const Shape& shape, const std::vector<char>& is_free, Random& random)
+{
+  internal::Patch patch;
+  patch.polygons = indexed(shape);
+  patch.is_free = is_free;
+  patch.barrier = internal::Drift_barrier(0.7);
+  patch.drift_bound = 0.3;
+  const auto direction = [&]() {
+    return Vector_3(Vector_3(random(-1, 1), random(-1, 1), random(-1, 1)).normalized());
+  };
+  const int n = patch.polygons.number_of_faces();
+  patch.samples.resize(4 * n);
+  for(int s = 0; s < 4 * n; ++s)
+    if(internal::sample_of(patch, s / 4, s % 4) == s)
+    {
+      patch.samples[s].distance = random(0, 0.5);
+      patch.samples[s].direction = direction();
+    }
+  for(int f = 0; f < n; f += 2)
+  {
+    internal::Patch::Guest guest{f, f, random(0, 0.5), 0.3};
+    guest.triangle = f;
+    guest.barycentric = Vector_3(0.2, 0.5, 0.3);
+    guest.direction = direction();
+    patch.guests.push_back(guest);
+  }
+  return patch;
+}
+
+// the energy, with the barrier, as the optimizer sees it
+template <typename Density>
+double energy_with_drift(const internal::Planar_problem& problem,
+                         const Density& density,
+                         std::vector<Vector_2> u)
+{
+  internal::Projected_newton optimizer;
+  optimizer.analyze(problem);
+  return optimizer.minimize(problem, density, u, 0, 0).initial_energy;
+}
+
 // One Newton step against the same step written down densely: elements' projected Hessians and
-// gradients by the chain rule, with the derivatives of the Jacobian by differences (it is linear).
+// gradients by the chain rule, with the derivatives of the Jacobian by differences (it is linear);
+// with a drift barrier in every second trial.
 template <typename Density>
 void test_newton_step(const Density& density)
 {
@@ -649,6 +716,40 @@ void test_newton_step(const Density& density)
       gradient += chain.transpose() * g;
       hessian += chain.transpose() * h * chain;
     }
+    if(trial % 2 == 1)
+    {
+      const internal::Patch patch = drifting_patch(regular, problem.is_free, random);
+      std::vector<internal::Tangent_frame> motions(u.size());
+      for(internal::Tangent_frame& m : motions)
+        m << random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1),
+          random(-1, 1);
+      problem.carriers = internal::drift_carriers(patch);
+      problem.drift.collect(patch, [&](int v) { return motions[v]; });
+      RCO_CHECK(problem.drift.terms().size() > 10);
+      const auto add = [&](const int* corners, const Vector_3& barycentric, double distance,
+                           double bound, const Vector_3& direction) {
+        if(!internal::Drift_barrier::is_felt(distance, bound))
+          return;
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(2 * n);
+        double r = distance;
+        for(int k = 0; k < 3; ++k)
+        {
+          const Vector_2 slope = barycentric(k) * motions[corners[k]].transpose() * direction;
+          r += slope.dot(u[corners[k]]);
+          if(variable[corners[k]] >= 0)
+            row.segment<2>(2 * variable[corners[k]]) = slope;
+        }
+        const auto d = patch.barrier.derivatives(r, bound);
+        gradient += d.first * row;
+        hessian += d.second * row * row.transpose();
+      };
+      for(int s = 0; s < int(patch.samples.size()); ++s)
+        add(&patch.polygons.corner_vertex[s / 4 * 3], internal::sample_barycentric(s % 4),
+            patch.samples[s].distance, patch.drift_bound, patch.samples[s].direction);
+      for(const internal::Patch::Guest& g : patch.guests)
+        add(&patch.polygons.corner_vertex[3 * g.triangle], g.barycentric, g.distance, g.bound,
+            g.direction);
+    }
     // the assembled gradient itself, by differences of the energy
     for(int v = 0; v < int(u.size()); ++v)
       for(int d = 0; d < 2 && variable[v] >= 0; ++d)
@@ -657,7 +758,8 @@ void test_newton_step(const Density& density)
         low[v](d) -= 1e-6;
         high[v](d) += 1e-6;
         const double slope =
-          (energy_of(problem, density, high) - energy_of(problem, density, low)) / 2e-6;
+          (energy_with_drift(problem, density, high) - energy_with_drift(problem, density, low)) /
+          2e-6;
         RCO_CHECK_NEAR(gradient(2 * variable[v] + d), slope, 1e-4 * (1 + gradient.norm()));
       }
     const Eigen::VectorXd expected = -hessian.ldlt().solve(gradient);
@@ -768,6 +870,7 @@ int main()
   test_time_of_collapse();
   test_factorization();
   test_newton_system();
+  test_drift_barrier();
   test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
   test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.),
                         "exponential MIPS, k = 0.5");

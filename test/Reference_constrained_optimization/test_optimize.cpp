@@ -6,8 +6,12 @@
 
 #include "test_meshes.h"
 
+#include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
 #include <CGAL/reference_constrained_optimize.h>
 
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
 #include <CGAL/Simple_cartesian.h>
@@ -887,6 +891,83 @@ bool test_data(const std::string& name, unsigned int iterations)
   return true;
 }
 
+// Distances of what the barrier watches, by the search tree: the larger of the two directions.
+double watched_drift(const Mesh& mesh, const Mesh& reference)
+{
+  typedef CGAL::Simple_cartesian<double> Kernel;
+  typedef CGAL::AABB_face_graph_triangle_primitive<Mesh> Primitive;
+  typedef CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> Tree;
+  const Tree to_reference(faces(reference).begin(), faces(reference).end(), reference),
+    to_mesh(faces(mesh).begin(), faces(mesh).end(), mesh);
+  double largest = 0;
+  for(const Mesh::Edge_index e : mesh.edges())
+    largest = (std::max)(largest, to_reference.squared_distance(CGAL::midpoint(
+                                    mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1)))));
+  for(const Mesh::Face_index f : mesh.faces())
+  {
+    std::vector<Kernel::Point_3> p;
+    for(const Mesh::Vertex_index v : vertices_around_face(mesh.halfedge(f), mesh))
+      p.push_back(mesh.point(v));
+    largest = (std::max)(largest, to_reference.squared_distance(CGAL::centroid(p[0], p[1], p[2])));
+  }
+  for(const Mesh::Vertex_index v : reference.vertices())
+    largest = (std::max)(largest, to_mesh.squared_distance(reference.point(v)));
+  return std::sqrt(largest);
+}
+
+// a model with sharp edges: what the bound promises, and that it is what does it
+void test_drift(const std::string& name)
+{
+  const Scope scope("drift of " + name);
+#ifdef RCO_DATA_DIR
+  const Mesh input = make_mesh<Mesh>(read_off(std::string(RCO_DATA_DIR) + "/" + name));
+#else
+  const Mesh input;
+#endif
+  if(input.is_empty())
+  {
+    std::cout << name << " was not found, skipped" << std::endl;
+    return;
+  }
+  const double edge = RCO::drift(input, input).reference_mean_edge_length;
+  const double infinity = std::numeric_limits<double>::infinity();
+  double last = infinity;
+  for(const double bound : {infinity, 0.5 * edge, -1., 0.1 * edge})
+  {
+    Mesh mesh = input;
+    const RCO::Result result =
+      bound < 0 ? CGAL::reference_constrained_optimize(mesh, input, RCO::Minimum_angle_energy(),
+                                                       CGAL::parameters::number_of_iterations(5))
+                : CGAL::reference_constrained_optimize(
+                    mesh, input, RCO::Minimum_angle_energy(),
+                    CGAL::parameters::drift_bound(bound).number_of_iterations(5));
+    const double drift = watched_drift(mesh, input);
+    RCO_CHECK_LESS(result.final_energy, result.initial_energy);
+    if(bound == infinity)
+    {
+      RCO_CHECK_EQUAL(result.drift_bound, infinity);
+      RCO_CHECK_LESS(1.3 * 0.25 * edge, drift); // there is something to prevent
+    }
+    else
+    {
+      RCO_CHECK_NEAR(result.drift_bound, bound < 0 ? 0.25 * edge : bound, 1e-12 * edge);
+      RCO_CHECK_LESS_EQUAL(result.initial_drift, 1e-12 * edge);
+      RCO_CHECK_LESS_EQUAL(drift, result.drift + 1e-12 * edge);
+      RCO_CHECK_LESS_EQUAL(result.drift, 1.3 * result.drift_bound);
+      RCO_CHECK_LESS(RCO::drift(mesh, input).maximum(), 1.6 * result.drift_bound);
+    }
+    RCO_CHECK_LESS_EQUAL(drift, last);
+    last = drift;
+
+    // from there on with a smaller bound, nothing gets worse
+    const RCO::Result again = CGAL::reference_constrained_optimize(
+      mesh, input, RCO::Minimum_angle_energy(),
+      CGAL::parameters::drift_bound(0.05 * edge).number_of_iterations(2));
+    RCO_CHECK_LESS_EQUAL(again.drift, again.initial_drift * (1 + 1e-12));
+    RCO_CHECK_LESS_EQUAL(watched_drift(mesh, input), again.initial_drift * (1 + 1e-12));
+  }
+}
+
 int main()
 {
   const auto start = std::chrono::steady_clock::now();
@@ -906,6 +987,7 @@ int main()
   timed("mesh types", test_mesh_types);
   timed("endings", test_endings);
   timed("exponents", test_exponents);
+  timed("drift", [] { test_drift("fandisk.off"); });
   timed("data", [] {
     test_data("blobby.off", 6);
     test_data("elephant.off", 4);

@@ -99,7 +99,7 @@ namespace parameters {
 CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
 /// starts a list with the relative decrease per iteration below which the optimization stops.
 CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
-/// starts a list with the largest distance from the reference to the mesh that steps may cause.
+/// starts a list with how far mesh and reference may be apart, a length.
 CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
 /// starts a list with whether patches are optimized directly on the reference where they can be.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)

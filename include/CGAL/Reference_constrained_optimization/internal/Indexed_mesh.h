@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -97,16 +98,16 @@ private:
   template <typename ConcurrencyTag, typename IsIt>
   static int find_first(int n, const IsIt& is_it)
   {
-    std::vector<int> found(number_of_blocks(n), -1);
-    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
-      for(int i = begin; i < end && found[block] < 0; ++i)
-        if(is_it(i))
-          found[block] = i;
+    std::atomic<int> first(n);
+    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+      int i = begin;
+      while(i < end && !is_it(i))
+        ++i;
+      int known = first;
+      while(i < end && i < known && !first.compare_exchange_weak(known, i))
+        ;
     });
-    for(const int i : found)
-      if(i >= 0)
-        return i;
-    return -1;
+    return first < n ? int(first) : -1;
   }
 
   // whether the faces at a vertex form one fan

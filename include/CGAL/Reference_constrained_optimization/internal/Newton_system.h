@@ -21,18 +21,15 @@ namespace internal {
 class Newton_system
 {
 public:
-  // `variable` numbers the free vertices and is -1 elsewhere; `triples` are the elements, and
-  // `further` ones have the numbers after them
+  // `variable` numbers the free vertices and is -1 elsewhere; `triples` are the elements
   void analyze(const std::vector<int>& variable,
                int number_of_variables,
-               const std::vector<std::array<int, 3>>& triples,
-               const std::vector<std::array<int, 3>>& further = {})
+               const std::vector<std::array<int, 3>>& triples)
   {
     m_sides.clear();
-    for(const auto* list : {&triples, &further})
-      for(const auto& t : *list)
-        for(int i = 0; i < 3; ++i)
-          m_sides.push_back({{variable[t[i]], variable[t[(i + 1) % 3]]}});
+    for(const auto& t : triples)
+      for(int i = 0; i < 3; ++i)
+        m_sides.push_back({{variable[t[i]], variable[t[(i + 1) % 3]]}});
     m_matrix.analyze(number_of_variables, m_sides);
   }
 

@@ -51,12 +51,15 @@ public:
     for(std::size_t i = 0; i < problem.is_free.size(); ++i)
       if(problem.is_free[i])
         m_variable[i] = m_size++;
-    // the same triangles need no entries of their own
-    const bool is_shared = problem.carriers.empty() || problem.carriers == problem.triples;
-    m_first_carrier = is_shared ? 0 : int(problem.triples.size());
+    m_triples = problem.triples;
+    m_first_carrier = 0;
+    if(problem.carriers != problem.triples) // which then need no entries of their own
+    {
+      m_first_carrier = int(m_triples.size());
+      m_triples.insert(m_triples.end(), problem.carriers.begin(), problem.carriers.end());
+    }
     if(m_size > 0)
-      m_system.analyze(m_variable, m_size, problem.triples,
-                       is_shared ? decltype(problem.carriers){} : problem.carriers);
+      m_system.analyze(m_variable, m_size, m_triples);
     m_right.resize(2 * m_size);
   }
 
@@ -287,7 +290,8 @@ private:
   }
 
   int m_size = 0;
-  int m_first_carrier = 0; // number of the first carrier in the system
+  int m_first_carrier = 0;                   // number of the first carrier among the triples
+  std::vector<std::array<int, 3>> m_triples; // of the system
   double m_strain_resistance = 0;
   double m_scale = 0; // of the energy, for tolerances
   Newton_system m_system;
