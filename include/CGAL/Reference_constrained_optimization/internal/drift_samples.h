@@ -52,8 +52,7 @@ Vector_3 triangle_point(const Indexed_mesh& mesh,
   return p;
 }
 
-// Looks for the closest point of R, from where it was last. A sample is no further away than it was
-// before plus its way: where that is little, it is not looked for.
+// Looks for the closest point of R, from where it was last.
 template <typename VertexAccess>
 void locate_sample(const Patch& patch,
                    const Reference_surface& reference,
@@ -62,10 +61,16 @@ void locate_sample(const Patch& patch,
                    Patch::Sample& sample)
 {
   const Indexed_mesh& mesh = patch.triangles();
+  const int i = s % 4, number_of_corners = i == 3 ? 3 : 2;
   const int* corners = &mesh.corner_vertex[mesh.face_begin[s / 4]];
-  const int f = vertex(corners[s % 4 % 3]).on_reference.face;
-  if(f == vertex(corners[(s % 4 + 1) % 3]).on_reference.face &&
-     (s % 4 < 3 || f == vertex(corners[2]).on_reference.face))
+  const int f = vertex(corners[i % 3]).on_reference.face;
+  bool is_inside = true; // of a face of R; constrained vertices may be off R
+  for(int k = 0; k < number_of_corners && is_inside; ++k)
+  {
+    const Placed_vertex& v = vertex(corners[(i + k) % 3]);
+    is_inside = v.on_reference.face == f && v.position == v.on_reference.position;
+  }
+  if(is_inside)
   {
     sample.face = f;
     sample.distance = 0;
