@@ -109,8 +109,8 @@ namespace CGAL {
  *                           barrier \f$ w\,u^2 / (1 - u) \f$ on the distances of the middles of edges
  *                           and faces from the reference and of the reference's vertices from the
  *                           mesh is added to the energy, and no step may take one of them beyond 1.3
- *                           times the bound. What is beyond the bound on input has its own distance
- *                           as its bound. Infinity switches the barrier off}
+ *                           times the bound. What is further away on input may not become worse.
+ *                           Infinity switches the barrier off}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{a quarter of the reference's mean edge length, or, if that is larger, what
  *                       allows as much as the input has (`Result::drift_bound` tells)}

@@ -25,7 +25,7 @@ namespace internal {
 // cutting R's features off. A patch takes its samples, and the vertices of R that are guests of its
 // faces, along; the acceptance test looks after them, and they return with the accepted patch.
 //
-// What is beyond the bound on input has its own distance as its bound.
+// What is beyond the bound on input may not go further than it is.
 class Drift_guard
 {
 public:
@@ -48,10 +48,10 @@ public:
     m_bound = at_least ? (std::max)(bound, m_initial_drift / Drift_barrier::last_part) : bound;
     if(!at_least && guests > m_bound)
       for(const double d : m_distance)
-        m_vertex_bounds.push_back((std::max)(m_bound, d));
+        m_vertex_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
     if(!at_least && samples > m_bound)
       for(const double d : distances)
-        m_face_bounds.push_back((std::max)(m_bound, d));
+        m_face_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
   }
 
   double bound() const { return m_bound; }
@@ -61,9 +61,13 @@ public:
   template <typename ConcurrencyTag>
   double drift(const Optimization_state& state)
   {
-    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state);
-    return (std::max)(*std::max_element(m_distance.begin(), m_distance.end()),
-                      *std::max_element(distances.begin(), distances.end()));
+    double largest = *std::max_element(m_distance.begin(), m_distance.end());
+    for(const Known& known : m_known)
+      largest = (std::max)(largest, known.distance);
+    if(m_known.empty()) // quads
+      for(const double d : measure_samples<ConcurrencyTag>(state))
+        largest = (std::max)(largest, d);
+    return largest;
   }
 
   void invite(const Optimization_state& state, Patch& patch) const
@@ -259,12 +263,19 @@ private:
             for(int k = 0; k < 3; ++k)
               p +=
                 sample_barycentric(i)(k) * state.vertices[mesh.corner_vertex[corners[k]]].position;
-            const int face = state.vertices[mesh.corner_vertex[corners[i % 3]]].on_reference.face;
-            const Surface_point foot = state.reference.descend(p, face);
-            const double distance = (foot.position - p).norm();
-            largest[f] = (std::max)(largest[f], distance);
-            if(!is_split)
-              m_known[4 * std::size_t(f) + i] = {foot.face, distance};
+            // a descent ends at a local minimum: what the corners lead to may differ
+            Known best;
+            for(int k = 0; k < 3; ++k)
+            {
+              const int face = state.vertices[mesh.corner_vertex[corners[k]]].on_reference.face;
+              const Surface_point foot = state.reference.descend(p, face);
+              const double distance = (foot.position - p).norm();
+              if(k == 0 || distance < best.distance)
+                best = {foot.face, distance};
+            }
+            largest[f] = (std::max)(largest[f], best.distance);
+            if(!is_split && known_sample(mesh, f, i) == 4 * std::size_t(f) + i)
+              m_known[4 * std::size_t(f) + i] = best;
           }
       }
     });
