@@ -113,7 +113,8 @@ namespace CGAL {
  *                           Infinity switches the barrier off}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{a quarter of the reference's mean edge length, or, if that is larger, what
- *                       allows as much as the input has (`Result::drift_bound` tells)}
+ *                       allows as much as the input has (`Result::drift_bound` tells); infinity
+ *                       if `use_on_surface_steps` is `false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by

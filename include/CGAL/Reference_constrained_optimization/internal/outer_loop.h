@@ -103,10 +103,13 @@ public:
 private:
   // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
   // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
+  // Flattened patches alone see the barrier only where it is felt already, and stall in front of it: for
+  // them it has to be asked for.
   void initialize_drift_guard()
   {
     const double bound = m_parameters.drift_bound;
-    if(bound > (std::numeric_limits<double>::max)())
+    if(bound > (std::numeric_limits<double>::max)() ||
+       (bound < 0 && !m_parameters.use_on_surface_steps))
       return;
     const Indexed_mesh& mesh = m_state.mesh;
     const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
