@@ -142,6 +142,13 @@ std::string describe(const Settings& s, const Options& o)
     .text();
 }
 
+double mean_edge_length(const Mesh& mesh)
+{
+  const RCO::internal::Mesh_copy copy =
+    RCO::internal::read_measured_mesh(mesh, CGAL::parameters::default_values(), "mesh");
+  return RCO::internal::mean_edge_length(copy.mesh, copy.points);
+}
+
 // optimizes one mesh and makes its row; `holds` tells whether all checks held
 Row run(const std::string& file, const Settings& s, const Options& o, bool& holds)
 {
@@ -160,10 +167,9 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
   };
   const auto own = CGAL::parameters::developability_threshold(s.developability)
                      .use_finishing_stage(s.finishing != 0);
-  const double edge_length = RCO::drift(reference, reference).reference_mean_edge_length;
-  const RCO::Result r = s.drift_bound < 0
-                          ? optimize_with(own)
-                          : optimize_with(own.drift_bound(s.drift_bound * edge_length));
+  const RCO::Result r =
+    s.drift_bound < 0 ? optimize_with(own)
+                      : optimize_with(own.drift_bound(s.drift_bound * mean_edge_length(reference)));
   const double memory = peak_memory();
 
   const std::string base = base_name(file);
@@ -180,9 +186,11 @@ Row run(const std::string& file, const Settings& s, const Options& o, bool& hold
   row.add("drift_mesh_to_reference", "drift", drift.relative_mesh_to_reference(), 3);
   row.add("drift_reference_to_mesh", "drift", drift.relative_reference_to_mesh(), 3);
   if(o.certifies)
-    row.add("certified_drift", "drift",
-            RCO::certified_drift(mesh, reference, 0.02 * edge_length).upper_bound() / edge_length,
-            3);
+    row.add(
+      "certified_drift", "drift",
+      RCO::certified_drift(mesh, reference, 0.02 * drift.reference_mean_edge_length).upper_bound() /
+        drift.reference_mean_edge_length,
+      3);
   add_flips_and_folds(row, {{r.initial_number_of_flips, r.initial_number_of_fold_edges},
                             {r.number_of_flips, r.number_of_fold_edges}});
   add_iterations(row, r);

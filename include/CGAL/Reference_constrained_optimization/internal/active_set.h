@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACTIVE_SET_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
 
 #include <algorithm>
 #include <cmath>
@@ -137,26 +138,14 @@ std::vector<char>
 bad_regions(const Optimization_state& state, const Density& density, double bad, int smallest)
 {
   const Indexed_mesh& mesh = state.mesh;
-  std::vector<char> result(mesh.number_of_faces(), 0), is_seen(mesh.number_of_faces(), 1);
+  std::vector<char> result(mesh.number_of_faces(), 0), is_left(mesh.number_of_faces(), 0);
   for(const std::pair<double, int>& d : face_densities<ConcurrencyTag>(state, density))
-    is_seen[d.second] = !(d.first > bad);
-  std::vector<int> region;
+    is_left[d.second] = d.first > bad;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
-    if(is_seen[f])
+    if(!is_left[f])
       continue;
-    is_seen[f] = 1;
-    region.assign(1, f);
-    for(std::size_t i = 0; i < region.size(); ++i)
-      for(int c = mesh.face_begin[region[i]]; c < mesh.face_begin[region[i] + 1]; ++c)
-      {
-        const int g = mesh.opposite[c] < 0 ? -1 : mesh.corner_face[mesh.opposite[c]];
-        if(g >= 0 && !is_seen[g])
-        {
-          is_seen[g] = 1;
-          region.push_back(g);
-        }
-      }
+    const std::vector<int> region = take_connected_region(mesh, f, is_left);
     if(int(region.size()) >= smallest)
       for(const int g : region)
         result[g] = 1;

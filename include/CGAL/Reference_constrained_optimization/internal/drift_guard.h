@@ -181,11 +181,9 @@ private:
     m_first[face] = r;
   }
 
-  // the two triangles of an edge share its sample
   static std::size_t known_sample(const Indexed_mesh& mesh, int f, int i)
   {
-    const int c = 3 * f + i, o = i < 3 ? mesh.opposite[c] : -1;
-    return o >= 0 && o < c ? 4 * std::size_t(o / 3) + o % 3 : 4 * std::size_t(f) + i;
+    return std::size_t(i < 3 ? edge_sample(mesh, 3 * f + i) : 4 * f + i);
   }
   static std::size_t known_sample(const Indexed_mesh& mesh, const Patch& patch, int s)
   {

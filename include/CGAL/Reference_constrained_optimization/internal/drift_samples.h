@@ -26,6 +26,13 @@ inline Vector_3 sample_barycentric(int i)
   return b;
 }
 
+// the sample of the edge at a corner: its two triangles share it
+inline int edge_sample(const Indexed_mesh& mesh, int c)
+{
+  const int o = mesh.opposite[c], holder = o >= 0 && o < c ? o : c;
+  return 4 * (holder / 3) + holder % 3;
+}
+
 // the sample that an edge or a triangle of the patch has; -1 if none of its vertices may move
 inline int sample_of(const Patch& patch, int t, int i)
 {
@@ -36,8 +43,7 @@ inline int sample_of(const Patch& patch, int t, int i)
     return is_free(0) || is_free(1) || is_free(2) ? 4 * t + 3 : -1;
   if(!is_free(i) && !is_free(i + 1))
     return -1;
-  const int o = mesh.opposite[begin + i];
-  return o >= 0 && o < begin + i ? 4 * (o / 3) + o % 3 : 4 * t + i;
+  return edge_sample(mesh, begin + i);
 }
 
 template <typename VertexAccess>

@@ -384,18 +384,6 @@ private:
     }
   }
 
-  // visits the wanted faces in one round of patches that are not flattened
-  template <typename AnyDensity>
-  bool visit_once(const std::vector<char>& is_wanted,
-                  Patch_partition& partition,
-                  Moves moves,
-                  const AnyDensity& density)
-  {
-    if(!may_go_on())
-      return false;
-    return solve_round(divide(is_wanted, partition), moves, density);
-  }
-
   std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted,
                                        Patch_partition& partition)
   {
@@ -405,7 +393,8 @@ private:
     return patches;
   }
 
-  // the same in small patches, of which each is a region of wanted faces if that is not too large
+  // visits the wanted faces in one round of small patches that are not flattened, of which each is a
+  // region of wanted faces if that is not too large
   template <typename AnyDensity>
   bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensity& density)
   {

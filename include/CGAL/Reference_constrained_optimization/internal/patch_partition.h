@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_PARTITION_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
 
 #include <CGAL/Random.h>
 
@@ -49,18 +50,7 @@ public:
     {
       if(!is_left[start])
         continue;
-      std::vector<int> region(1, start);
-      is_left[start] = 0;
-      for(std::size_t next = 0; next < region.size(); ++next)
-        for(int c = m_mesh.face_begin[region[next]]; c < m_mesh.face_begin[region[next] + 1]; ++c)
-        {
-          const int o = m_mesh.opposite[c];
-          if(o >= 0 && is_left[m_mesh.corner_face[o]])
-          {
-            is_left[m_mesh.corner_face[o]] = 0;
-            region.push_back(m_mesh.corner_face[o]);
-          }
-        }
+      std::vector<int> region = take_connected_region(m_mesh, start, is_left);
       if(region.size() <= std::size_t((std::min)(3 * m_size, m_largest)))
       {
         patches.push_back(std::move(region));
