@@ -17,7 +17,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Where a mesh leaves R is seen at the middles of its edges and triangles, and from R's vertices.
+// Where a mesh leaves R is seen at the middles of its edges and triangles, and from R's vertices and creases.
 // Triangle t has the samples 4 t + i: the middle of its edge i for i < 3 (held by one of the two
 // triangles of an edge), its own for i = 3.
 
@@ -111,14 +111,14 @@ void locate_sample(const Patch& patch,
     start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
 }
 
-// Looks for the closest point of the patch to a vertex of R, from where it was last.
+// Looks for the closest point of the patch to a point of R, from where it was last.
 template <typename VertexAccess>
 void locate_guest(const Patch& patch,
                   const Reference_surface& reference,
                   const VertexAccess& vertex,
                   Patch::Guest& guest)
 {
-  const Vector_3& p = reference.points()[guest.vertex];
+  const Vector_3 p = reference.witness(guest.witness);
   const Foot foot = descend_to(
     patch.triangles(), [&](int v) -> const Vector_3& { return vertex(v).position; }, p,
     patch.triangle_of(guest.polygon));
