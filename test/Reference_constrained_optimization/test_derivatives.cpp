@@ -646,12 +646,12 @@ internal::Patch drifting_patch(const Shape& shape, const std::vector<char>& is_f
   for(int s = 0; s < 4 * n; ++s)
     if(internal::sample_of(patch, s / 4, s % 4) == s)
     {
-      patch.samples[s].distance = random(0, 0.5);
+      patch.samples[s].distance = random(0, 0.36);
       patch.samples[s].direction = direction();
     }
   for(int f = 0; f < n; f += 2)
   {
-    internal::Patch::Guest guest{f, f, random(0, 0.5), 0.3};
+    internal::Patch::Guest guest{f, f, random(0, 0.36), 0.3};
     guest.triangle = f;
     guest.barycentric = Vector_3(0.2, 0.5, 0.3);
     guest.direction = direction();
