@@ -9,11 +9,12 @@
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
-#include <CGAL/Reference_constrained_optimization/internal/commit.h>
+#include <CGAL/Reference_constrained_optimization/internal/commit_round.h>
 #include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
+#include <CGAL/Reference_constrained_optimization/internal/saved_state.h>
 
 #include <CGAL/Random.h>
 
@@ -302,18 +303,7 @@ private:
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    Drift_guard::Snapshot snapshot;
-    std::vector<std::pair<int, Placed_vertex>> saved; // vertices, before they were in a patch
-    std::vector<char> is_saved(m_state.vertices.size(), 0);
-    std::vector<char> face_is_saved(m_state.mesh.number_of_faces(), 0);
-    const auto forget = [&]() {
-      for(const std::pair<int, Placed_vertex>& v : saved)
-        is_saved[v.first] = 0;
-      saved.clear();
-      for(const int f : snapshot.faces)
-        face_is_saved[f] = 0;
-      snapshot = Drift_guard::Snapshot();
-    };
+    Saved_state saved(m_state, m_drift_guard);
     using Stage = Finishing_stage<ConcurrencyTag>;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
     const auto energy = [&](int f) {
@@ -325,32 +315,13 @@ private:
     Stage(m_state, energy, m_initial_energy)
       .run(
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
-          const Indexed_mesh& mesh = m_state.mesh;
-          for(const int f : faces.list)
-          {
-            if(!face_is_saved[f])
-              m_drift_guard.save(mesh, f, snapshot);
-            face_is_saved[f] = 1;
-            for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-            {
-              const int v = mesh.corner_vertex[c];
-              if(!is_saved[v])
-                saved.emplace_back(v, m_state.vertices[v]);
-              is_saved[v] = 1;
-            }
-          }
+          saved.add(faces.list);
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
           return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
                                Angle_barrier_density<Density>(m_density, goal.target));
         },
-        forget,
-        [&]() {
-          for(const std::pair<int, Placed_vertex>& v : saved)
-            m_state.vertices[v.first] = v.second;
-          m_drift_guard.restore(snapshot);
-          forget();
-        });
+        [&]() { saved.forget(); }, [&]() { saved.restore(); });
     m_limits = limits;
     m_is_finishing = false;
   }
@@ -437,45 +408,13 @@ private:
       if(!stops)
         solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
     });
-    commit(solved);
+    commit_round(
+      m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
+      [&](const Solved_patch& s) { update(s); });
     m_visitor.on_round_end();
     if(stops && !is_sequential)
       m_result.status = Status::time_limit;
     return !stops;
-  }
-
-  // commits the patches of a round and reports them; those that were reported stay also when the
-  // visitor throws
-  void commit(std::vector<Solved_patch>& solved)
-  {
-    std::size_t number = 0;
-    const auto commit_insides = [&]() {
-      m_for_each(number, [&](Patch_solver&, std::size_t i) {
-        if(solved[i].decision.accepted)
-        {
-          commit_inside(m_state, solved[i]);
-          update(solved[i]);
-        }
-        solved[i].drop_vertices();
-      });
-    };
-    try
-    {
-      while(number < solved.size())
-      {
-        Solved_patch& s = solved[number++];
-        if(s.number_of_faces == 0)
-          continue;
-        commit_boundary(m_state, s);
-        report(s);
-      }
-    }
-    catch(...)
-    {
-      commit_insides();
-      throw;
-    }
-    commit_insides();
   }
 
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
