@@ -26,14 +26,17 @@ void commit_round(Optimization_state& state,
 {
   std::size_t number = 0;
   const auto commit_insides = [&]() {
-    for_each(number, [&](Patch_solver&, std::size_t i) {
-      if(solved[i].decision.accepted)
-      {
-        commit_inside(state, solved[i]);
-        update(solved[i]);
-      }
-      solved[i].drop_vertices();
-    });
+    for_each(
+      number,
+      [&](Patch_solver&, std::size_t i) {
+        if(solved[i].decision.accepted)
+        {
+          commit_inside(state, solved[i]);
+          update(solved[i]);
+        }
+        solved[i].drop_vertices();
+      },
+      []() {}); // that is soon done
   };
   try
   {

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 
 #include <algorithm>
@@ -37,11 +38,12 @@ public:
   void initialize(const Optimization_state& state,
                   double bound,
                   bool at_least,
-                  const Drift_barrier& barrier)
+                  const Drift_barrier& barrier,
+                  Interruption* interruption = nullptr)
   {
     m_barrier = barrier;
-    welcome_guests<ConcurrencyTag>(state);
-    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state);
+    welcome_guests<ConcurrencyTag>(state, interruption);
+    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state, interruption);
     const double guests = *std::max_element(m_distance.begin(), m_distance.end());
     const double samples = *std::max_element(distances.begin(), distances.end());
     m_initial_drift = (std::max)(guests, samples);
@@ -191,7 +193,7 @@ private:
   }
 
   template <typename ConcurrencyTag>
-  void welcome_guests(const Optimization_state& state)
+  void welcome_guests(const Optimization_state& state, Interruption* interruption)
   {
     const Indexed_mesh& mesh = state.mesh;
     const Indexed_mesh& reference = state.reference.mesh();
@@ -216,12 +218,15 @@ private:
       else
         all_are_twins = false;
     }
+    check(interruption);
     if(!all_are_twins)
     {
       copy.mesh = mesh;
       const Reference_surface surface(copy);
       for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
         for(int r = begin; r < end; ++r)
+        {
+          check_now_and_then(interruption, r);
           if(face[r] < 0 && reference.vertex_begin[r] < reference.vertex_begin[r + 1])
           {
             const Vector_3& p = state.reference.points()[r];
@@ -229,6 +234,7 @@ private:
             face[r] = surface.original_face(foot.face);
             m_distance[r] = (foot.position - p).norm();
           }
+        }
       });
     }
     for(int r = 0; r < n; ++r)
@@ -238,7 +244,8 @@ private:
 
   // the largest distance of the samples of each face
   template <typename ConcurrencyTag>
-  std::vector<double> measure_samples(const Optimization_state& state)
+  std::vector<double> measure_samples(const Optimization_state& state,
+                                      Interruption* interruption = nullptr)
   {
     const Indexed_mesh& mesh = state.mesh;
     const int n = mesh.number_of_faces();
@@ -249,6 +256,7 @@ private:
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
+        check_now_and_then(interruption, f);
         if(is_face_of_reference(state, f))
           continue;
         // as a fan: a quad is split this way or that

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
@@ -85,7 +86,8 @@ template <typename ConcurrencyTag = CGAL::Sequential_tag>
 void place_on_reference(const std::vector<Vector_3>& points,
                         Reference_surface& reference,
                         Optimization_state& state,
-                        Result& result)
+                        Result& result,
+                        Interruption* interruption = nullptr)
 {
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
@@ -102,12 +104,15 @@ void place_on_reference(const std::vector<Vector_3>& points,
   state.vertices.resize(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
     for(int v = begin; v < end; ++v)
+    {
+      check_now_and_then(interruption, v);
       if(mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
       {
         const int twin = index.find(points[v]);
         state.vertices[v].on_reference =
           twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
       }
+    }
   });
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {

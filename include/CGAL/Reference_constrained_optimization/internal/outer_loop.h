@@ -12,6 +12,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/commit_round.h>
 #include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
 #include <CGAL/Reference_constrained_optimization/internal/saved_state.h>
@@ -19,11 +20,9 @@
 #include <CGAL/Random.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -45,13 +44,13 @@ public:
              const Loop_parameters& parameters,
              Visitor& visitor,
              Result& result,
-             const std::chrono::steady_clock::time_point& start)
+             Interruption& interruption)
     : m_state(state),
       m_density(density),
       m_parameters(parameters),
       m_visitor(visitor),
       m_result(result),
-      m_start(start),
+      m_interruption(interruption),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters, state.mesh)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
@@ -62,11 +61,38 @@ public:
                         small_patch_size(parameters.selection, state.mesh),
                         largest_patch_size(parameters.selection)),
       m_rounds(state.mesh, parameters.halo),
-      m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
+      m_for_each([&state, &parameters, &interruption]() {
+        return Patch_solver(state, parameters, &interruption);
+      })
   {}
 
-  // the state holds what was accepted, also when a visitor throws
+  // the state holds what was accepted, also when it is cut short or a visitor throws
   void run()
+  {
+    try
+    {
+      optimize();
+    }
+    catch(const Interrupted&)
+    {}
+    catch(...)
+    {
+      note_end();
+      throw;
+    }
+    note_end();
+  }
+
+private:
+  void note_end()
+  {
+    if(m_interruption.has_stopped())
+      m_result.status = m_interruption.status();
+    if(m_drift_guard.is_on())
+      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
+  }
+
+  void optimize()
   {
     const Indexed_mesh& mesh = m_state.mesh;
     Global_measure before =
@@ -87,21 +113,21 @@ public:
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
+    m_interruption.check();
     initialize_drift_guard();
+    m_interruption.check();
     m_geometry.update(mesh, points);
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
+    m_interruption.check();
     m_result.status = Status::iteration_limit;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(iterate_to_convergence(before) && revisits && revisit_worst() && finishes_angles())
       finish_angles();
-    if(m_drift_guard.is_on())
-      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
   }
 
-private:
   // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
   // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
   // Flattened patches alone see the barrier only where it is felt already, and stall in front of it: for
@@ -116,10 +142,26 @@ private:
     const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
     const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
     const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
-    m_drift_guard.initialize<ConcurrencyTag>(
-      m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest), bound < 0, barrier);
+    Drift_guard guard; // of no use if that is cut short
+    guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
+                                     bound < 0, barrier, &m_interruption);
+    m_drift_guard = std::move(guard);
     m_result.drift_bound = m_drift_guard.bound();
     m_result.initial_drift = m_drift_guard.initial_drift();
+  }
+
+  // calls a visit; false if that was cut short
+  template <typename Visit>
+  static bool completes(const Visit& visit)
+  {
+    try
+    {
+      return visit();
+    }
+    catch(const Interrupted&)
+    {
+      return false;
+    }
   }
 
   // false if cut short
@@ -133,7 +175,7 @@ private:
       m_has_refused = false;
       m_taken = m_could_move = 0;
       ++m_result.number_of_iterations;
-      const bool complete = visit_active();
+      const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
       m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
       if(!complete)
@@ -198,7 +240,7 @@ private:
           is_wanted = faces_to_flatten();
       },
       [&]() { patches = divide(m_is_active, m_partition); });
-    return (!flattens || visit(is_wanted, m_selection)) && may_go_on() &&
+    return (!flattens || visit(is_wanted, m_selection)) && !m_interruption.stops() &&
            solve_round(patches, Moves::on_surface, m_density);
   }
 
@@ -312,8 +354,10 @@ private:
         sum += element_energy(m_density, m_state.elements[e], vertex);
       return sum;
     };
-    Stage(m_state, energy, m_initial_energy)
-      .run(
+    Stage stage(m_state, energy, m_initial_energy);
+    try
+    {
+      stage.run(
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
           saved.add(faces.list);
           m_limits.sharpest = goal.sharpest;
@@ -322,6 +366,12 @@ private:
                                Angle_barrier_density<Density>(m_density, goal.target));
         },
         [&]() { saved.forget(); }, [&]() { saved.restore(); });
+    }
+    catch(...)
+    {
+      saved.restore();
+      throw;
+    }
     m_limits = limits;
     m_is_finishing = false;
   }
@@ -342,11 +392,11 @@ private:
 
     while(true)
     {
-      if(!may_go_on())
+      if(m_interruption.stops())
         return false;
       const auto start = std::chrono::steady_clock::now();
       const std::vector<std::vector<int>> patches =
-        m_rounds.select(seeds, m_is_untouched, selection, m_geometry);
+        m_rounds.select(seeds, m_is_untouched, selection, m_geometry, &m_interruption);
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
@@ -369,26 +419,13 @@ private:
   template <typename AnyDensity>
   bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensity& density)
   {
-    if(!may_go_on())
+    if(m_interruption.stops())
       return false;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<int>> patches =
       m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
     return solve_round(patches, moves, density);
-  }
-
-  bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
-
-  bool may_go_on()
-  {
-    if(!has_time())
-      m_result.status = Status::time_limit;
-    else if(!m_visitor.go_further())
-      m_result.status = Status::interrupted;
-    else
-      return true;
-    return false;
   }
 
   // false if it was cut short; what was solved by then is committed
@@ -399,22 +436,26 @@ private:
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
     std::vector<Solved_patch> solved(patches.size());
-    const bool is_sequential = std::is_same<ConcurrencyTag, CGAL::Sequential_tag>::value;
-    std::atomic<bool> stops(false);
-    m_for_each(patches.size(), [&](Patch_solver& solver, std::size_t i) {
-      // only the calling thread may ask the visitor
-      if(!stops && !(is_sequential ? may_go_on() : has_time()))
-        stops = true;
-      if(!stops)
-        solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
-    });
+    m_for_each(
+      patches.size(),
+      [&](Patch_solver& solver, std::size_t i) {
+        if(m_interruption.stops())
+          return;
+        try
+        {
+          solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
+        }
+        catch(const Interrupted&)
+        {
+          solved[i] = Solved_patch(); // as if it had not been begun
+        }
+      },
+      [&]() { m_interruption.stops(); });
     commit_round(
       m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
       [&](const Solved_patch& s) { update(s); });
     m_visitor.on_round_end();
-    if(stops && !is_sequential)
-      m_result.status = Status::time_limit;
-    return !stops;
+    return !m_interruption.has_stopped();
   }
 
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
@@ -476,7 +517,7 @@ private:
   Loop_parameters m_parameters;
   Visitor& m_visitor;
   Result& m_result;
-  std::chrono::steady_clock::time_point m_start;
+  Interruption& m_interruption;
   CGAL::Random m_random;
   Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;
