@@ -223,6 +223,7 @@ private:
     {
       copy.mesh = mesh;
       const Reference_surface surface(copy);
+      check(interruption);
       for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
         for(int r = begin; r < end; ++r)
         {

@@ -97,6 +97,7 @@ private:
     const Indexed_mesh& mesh = m_state.mesh;
     Global_measure before =
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
+    m_interruption.check();
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
     const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
@@ -117,6 +118,7 @@ private:
     initialize_drift_guard();
     m_interruption.check();
     m_geometry.update(mesh, points);
+    m_interruption.check();
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
@@ -252,10 +254,12 @@ private:
     // mesh what was one triangle is many
     const int smallest_region = m_prizes_angles ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
+    m_interruption.check();
     const std::vector<char> is_bad =
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
+    m_interruption.check();
     is_wanted = faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_wanted), 2);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
@@ -282,6 +286,7 @@ private:
     double before = std::numeric_limits<double>::infinity();
     for(int pass = 0; pass < maximum_passes; ++pass)
     {
+      m_interruption.check();
       const std::vector<std::pair<double, int>> worst =
         worst_faces<ConcurrencyTag>(m_state, m_density, m_limits.bad);
       if(worst.empty())
@@ -344,6 +349,7 @@ private:
   {
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
+    m_interruption.check();
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
     Saved_state saved(m_state, m_drift_guard);
     using Stage = Finishing_stage<ConcurrencyTag>;
@@ -409,7 +415,7 @@ private:
                                        Patch_partition& partition)
   {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random, &m_interruption);
     m_result.times.selection += seconds_since(start);
     return patches;
   }

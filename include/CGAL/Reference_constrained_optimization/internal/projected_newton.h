@@ -93,7 +93,7 @@ public:
     for(int step = 0; step < maximum_steps; ++step)
     {
       check(m_interruption);
-      if(!m_system.solve(m_right, m_direction))
+      if(!m_system.solve(m_right, m_direction, m_interruption))
         break;
       check(m_interruption);
       damp(problem, u);
