@@ -199,7 +199,7 @@ private:
         if(m_reach[i] < last_reach)
           continue;
         goes_on = true;
-        check(m_interruption);
+        check_now_and_then(m_interruption, int(i));
         double edge = 0;
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
           edge +=

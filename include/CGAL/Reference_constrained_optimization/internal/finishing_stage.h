@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FINISHING_STAGE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,8 +60,10 @@ public:
   // `energy(f)` is that of a face; their sum may rise, but not beyond `largest_energy`.
   Finishing_stage(const Optimization_state& state,
                   std::function<double(int)> energy,
-                  double largest_energy)
+                  double largest_energy,
+                  Interruption* interruption = nullptr)
     : m_state(state),
+      m_interruption(interruption),
       m_face_energy(std::move(energy)),
       m_largest_energy(largest_energy)
   {}
@@ -182,11 +185,15 @@ private:
     m_low.clear();
     int rings = 0;
     for(std::size_t f = 0; f < m_angles.size(); ++f)
+    {
+      check_now_and_then(m_interruption, int(f));
       if(m_angles[f] < angle && can_rise(int(f)))
       {
         m_low.push_back(int(f));
         rings = (std::max)(rings, int(m_rings[f]));
       }
+    }
+    check(m_interruption);
     for(; rings > 0; --rings)
     {
       for(const int f : m_low)
@@ -307,6 +314,7 @@ private:
   }
 
   const Optimization_state& m_state;
+  Interruption* m_interruption;
   const std::function<double(int)> m_face_energy;
   const double m_largest_energy;
   std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move

@@ -360,7 +360,7 @@ private:
         sum += element_energy(m_density, m_state.elements[e], vertex);
       return sum;
     };
-    Stage stage(m_state, energy, m_initial_energy);
+    Stage stage(m_state, energy, m_initial_energy, &m_interruption);
     try
     {
       stage.run(
