@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
@@ -193,12 +194,20 @@ namespace CGAL {
  *         makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
  *         accepted state.
  */
-template <typename ConcurrencyTag = CGAL::Sequential_tag,
-          typename PolygonMesh,
-          typename ReferenceMesh,
-          typename Energy,
-          typename NamedParameters = parameters::Default_named_parameters,
-          typename NamedParametersReference = parameters::Default_named_parameters>
+template <
+  typename ConcurrencyTag = CGAL::Sequential_tag,
+  typename PolygonMesh,
+  typename ReferenceMesh,
+  typename Energy,
+  typename NamedParameters = parameters::Default_named_parameters,
+  typename NamedParametersReference = parameters::Default_named_parameters
+#ifndef DOXYGEN_RUNNING
+  ,
+  std::enable_if_t<
+    !Reference_constrained_optimization::internal::Is_face_range<PolygonMesh, ReferenceMesh>::value,
+    int> = 0
+#endif
+  >
 Reference_constrained_optimization::Result reference_constrained_optimize(
   PolygonMesh& mesh,
   const ReferenceMesh& reference,
@@ -214,6 +223,59 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   return internal::optimize<ConcurrencyTag>(
     mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
     np_reference);
+}
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * does the same for a part of a mesh.
+ *
+ * Vertices that have a face outside the range do not move, not by a bit. The energies of the result
+ * are means over the elements of the range's faces, its drift is that of these faces, and the number
+ * of free vertices is counted among them; flips, fold edges and non-convex quads are counted in the
+ * whole mesh. Nothing is asked of the faces outside but that the mesh is one of triangles and quads:
+ * the energy need not be defined on them, and they may be far from the reference. What an energy
+ * derives from the mesh, such as its mean edge length and area, is that of the whole mesh.
+ *
+ * An empty range is nothing to do.
+ *
+ * \tparam FaceRange a model of `ConstRange` with the face descriptor of `PolygonMesh` as value type
+ *
+ * \param face_range the faces to be optimized; one that is named twice counts once.
+ *
+ * All other parameters, the result and the exceptions are those of the function for a whole mesh.
+ */
+template <
+  typename ConcurrencyTag = CGAL::Sequential_tag,
+  typename FaceRange,
+  typename PolygonMesh,
+  typename ReferenceMesh,
+  typename Energy,
+  typename NamedParameters = parameters::Default_named_parameters,
+  typename NamedParametersReference = parameters::Default_named_parameters
+#ifndef DOXYGEN_RUNNING
+  ,
+  std::enable_if_t<
+    Reference_constrained_optimization::internal::Is_face_range<FaceRange, PolygonMesh>::value,
+    int> = 0
+#endif
+  >
+Reference_constrained_optimization::Result reference_constrained_optimize(
+  const FaceRange& face_range,
+  PolygonMesh& mesh,
+  const ReferenceMesh& reference,
+  const Energy& energy,
+  const NamedParameters& np = parameters::default_values(),
+  const NamedParametersReference& np_reference = parameters::default_values())
+{
+  namespace internal = Reference_constrained_optimization::internal;
+#ifndef CGAL_LINKED_WITH_TBB
+  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
+                "Parallel_tag is enabled but TBB is unavailable.");
+#endif
+  return internal::optimize<ConcurrencyTag>(
+    mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
+    np_reference, face_range);
 }
 
 } // namespace CGAL

@@ -106,7 +106,8 @@ RCO::Result optimize(Mesh& mesh, const Mesh& reference, const Scene& scene, Visi
   const auto np = params::use_on_surface_steps(scene.on_surface).visitor(std::ref(visitor));
   if(scene.has_quads)
     return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Quad_angle_energy(), np);
-  return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(), np);
+  return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(),
+                                                   np);
 }
 
 // the energy of a mesh as it is
@@ -114,10 +115,10 @@ double energy(const Mesh& m, const Mesh& reference, const Scene& scene)
 {
   Mesh mesh = m;
   const auto np = params::number_of_iterations(0);
-  return (scene.has_quads ? CGAL::reference_constrained_optimize(mesh, reference,
-                                                                 RCO::Quad_angle_energy(), np)
-                          : CGAL::reference_constrained_optimize(mesh, reference,
-                                                                 RCO::Minimum_angle_energy(), np))
+  return (scene.has_quads
+            ? CGAL::reference_constrained_optimize(mesh, reference, RCO::Quad_angle_energy(), np)
+            : CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy(),
+                                                   np))
     .initial_energy;
 }
 
@@ -300,8 +301,7 @@ void test_latency()
       const Visitor::Clock::time_point start = Visitor::Clock::now();
       const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(
         mesh, reference, RCO::Minimum_angle_energy(), params::maximum_running_time(time));
-      overtime =
-        std::chrono::duration<double>(Visitor::Clock::now() - start).count() - time;
+      overtime = std::chrono::duration<double>(Visitor::Clock::now() - start).count() - time;
       if(limit < 1)
         RCO_CHECK(r.status == RCO::Status::time_limit);
       if(overtime < limit)

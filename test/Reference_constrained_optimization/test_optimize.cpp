@@ -41,7 +41,7 @@ struct Stopped : std::runtime_error
 struct Recorder : RCO::Default_visitor
 {
   long questions_until_stop = -1, patches_until_throw = -1;
-  long questions = 0, questions_of_setup = 0;
+  long questions = 0, questions_of_setup = 0, questions_of_iterations = 0;
 
   std::size_t iterations = 0, rounds = 0, patches = 0, accepted = 0, faces = 0, open_rounds = 0;
   std::size_t announced = 0;
@@ -61,6 +61,7 @@ struct Recorder : RCO::Default_visitor
     RCO_CHECK_EQUAL(i, iterations);
     RCO_CHECK(std::isfinite(energy));
     ++iterations;
+    questions_of_iterations = questions;
     energies.push_back(energy);
   }
   void on_round_begin(std::size_t n)
@@ -793,15 +794,16 @@ void test_endings()
   const Outcome complete = optimized(rough, regular, options);
   RCO_CHECK(complete.result.status == RCO::Status::converged);
   double previous = complete.result.initial_energy;
-  const long first = complete.recorder.questions_of_setup, all = complete.recorder.questions;
-  for(const long questions : {first, first + 1, (3 * first + all) / 4, (first + all) / 2, all - 1})
+  // the finishing stage may cost some energy
+  const long first = complete.recorder.questions_of_setup,
+             last = complete.recorder.questions_of_iterations - 1;
+  for(const long questions : {first, first + 1, (3 * first + last) / 4, (first + last) / 2, last})
   {
     const Scope s("interrupted after " + std::to_string(questions));
     options.recorder.questions_until_stop = questions;
     const Outcome out = optimized(rough, regular, options);
     RCO_CHECK(out.result.status == RCO::Status::interrupted);
     RCO_CHECK_LESS_EQUAL(out.result.final_energy, previous);
-    RCO_CHECK_LESS_EQUAL(complete.result.final_energy, out.result.final_energy);
     if(questions == first)
       RCO_CHECK(same_bits(out.before, out.after));
     previous = out.result.final_energy;

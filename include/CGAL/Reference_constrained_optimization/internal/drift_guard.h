@@ -92,13 +92,13 @@ public:
         if(s != 4 * t + i)
           continue;
         Patch::Sample& sample = patch.samples[s];
-        if(!patch.is_split)
+        if(!m_known.empty())
         {
           const Known& known = m_known[known_sample(state.mesh, patch, s)];
           sample.face = known.face;
           sample.distance = known.distance;
         }
-        if(patch.is_split || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
+        if(m_known.empty() || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
           locate_sample(patch, state.reference, vertex, s, sample);
       }
 
@@ -124,7 +124,7 @@ public:
   Known_samples samples_of(const Indexed_mesh& mesh, const Patch& patch) const
   {
     Known_samples result;
-    if(!is_on() || patch.is_split)
+    if(!is_on() || m_known.empty())
       return result;
     for(int s = 0; s < int(patch.samples.size()); ++s)
       if(sample_of(patch, s / 4, s % 4) == s)
@@ -233,7 +233,8 @@ private:
             const Vector_3& p = state.reference.points()[r];
             const Surface_point foot = surface.closest(p);
             face[r] = surface.original_face(foot.face);
-            m_distance[r] = (foot.position - p).norm();
+            if(state.counts(face[r]))
+              m_distance[r] = (foot.position - p).norm();
           }
         }
       });
@@ -258,7 +259,7 @@ private:
       for(int f = begin; f < end; ++f)
       {
         check_now_and_then(interruption, f);
-        if(is_face_of_reference(state, f))
+        if(!state.counts(f) || is_face_of_reference(state, f))
           continue;
         // as a fan: a quad is split this way or that
         const int first = mesh.face_begin[f];
@@ -306,7 +307,7 @@ private:
   double m_bound = 0, m_initial_drift = 0;
   std::vector<double> m_face_bounds;   // per face of the mesh; empty if all are the bound
   std::vector<double> m_vertex_bounds; // per vertex of R; empty if all are the bound
-  std::vector<Known> m_known; // four per face of a triangle mesh; no less than the true distance
+  std::vector<Known> m_known; // four per face if all are triangles; no less than the true distance
   // the guests of every face are a list: the first one, and the next one after each vertex of R
   std::vector<int> m_first, m_next;
   std::vector<double> m_distance; // per vertex of R

@@ -251,7 +251,7 @@ private:
   }
 
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
-  double mean() const { return m_sum / double(m_angles.size()); }
+  double mean() const { return m_sum / m_number_of_faces; }
 
   // of a face
   double smallest_angle(int f) const
@@ -271,11 +271,14 @@ private:
     m_rings.assign(n, 1);
     m_is_visited.assign(n, 0);
     std::vector<double> angles(n);
+    m_number_of_faces = 0;
+    for(int f = 0; f < n; ++f)
+      m_number_of_faces += m_state.counts(f);
     m_energies.resize(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
-        angles[f] = smallest_angle(f);
+        angles[f] = m_state.counts(f) ? smallest_angle(f) : 0;
         m_energies[f] = m_face_energy(f);
         bool may_change = false;
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -320,6 +323,7 @@ private:
   std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move
   std::vector<unsigned char> m_rings; // per face: what surroundings it needs
   std::vector<double> m_energies;     // per face
+  double m_number_of_faces = 0;       // that are to be optimized
   double m_energy = 0;                // of all
   double m_minimum = 0;               // of all faces that may change
   double m_sum = 0;                   // of all

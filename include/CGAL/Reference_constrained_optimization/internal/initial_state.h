@@ -101,6 +101,13 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const Point_index index(reference.points(), [&](int v) {
     return surface.vertex_begin[v] < surface.vertex_begin[v + 1];
   });
+  // what is not optimized may be where it likes
+  const auto is_needed = [&](int v) {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      if(state.counts(mesh.corner_face[mesh.vertex_corners[k]]))
+        return true;
+    return false;
+  };
   state.vertices.resize(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
     for(int v = begin; v < end; ++v)
@@ -121,11 +128,12 @@ void place_on_reference(const std::vector<Vector_3>& points,
     if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
       continue;
     const double distance = (placed.on_reference.position - points[v]).norm();
-    if(distance > limit)
+    if(distance > limit && is_needed(v))
       throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +
                           " away from the reference, more than a tenth of its diagonal (" +
                           std::to_string(reference.diagonal()) + ")");
-    result.largest_initial_distance = (std::max)(result.largest_initial_distance, distance);
+    if(distance > result.largest_initial_distance && is_needed(v))
+      result.largest_initial_distance = distance;
     if(state.is_free[v])
     {
       ++result.number_of_free_vertices;
@@ -144,6 +152,8 @@ void place_on_reference(const std::vector<Vector_3>& points,
   double agreement = 0;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
+    if(!state.counts(f))
+      continue;
     const Vector_3 n = face_normal(mesh, vertex, f);
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       agreement += n.dot(vertex(mesh.corner_vertex[c]).normal);

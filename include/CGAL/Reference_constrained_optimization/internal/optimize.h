@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
@@ -17,9 +18,11 @@
 
 #include <CGAL/boost/graph/named_params_helper.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
@@ -52,10 +55,12 @@ template <typename ConcurrencyTag,
           typename PolygonMesh,
           typename ReferenceMesh,
           typename Energy,
+          typename FaceRange,
           typename Visitor,
           typename NamedParameters,
           typename NamedParametersReference>
-void optimize(PolygonMesh& mesh,
+void optimize(const FaceRange& range,
+              PolygonMesh& mesh,
               const ReferenceMesh& reference,
               const Energy& energy,
               const Loop_parameters& loop_parameters,
@@ -84,10 +89,12 @@ void optimize(PolygonMesh& mesh,
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
                                surface_area(copy.mesh, copy.points), surface.area());
-  const Element_set elements(energy, context);
+  const std::vector<char> is_in_range = mark_faces(mesh, range);
+  const Element_set elements(energy, context, is_in_range);
   interruption.check();
-  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
-  const Constraints constraints = read_constraints(mesh, np, copy.mesh);
+  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}, is_in_range};
+  Constraints constraints = read_constraints(mesh, np, copy.mesh);
+  constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption);
   if(loop_parameters.relax_constraints)
@@ -98,7 +105,8 @@ void optimize(PolygonMesh& mesh,
   typedef typename std::decay<decltype(density)>::type Density;
   const double infinity = std::numeric_limits<double>::infinity();
   const Global_measure initial = measure<ConcurrencyTag>(state, density, infinity);
-  result.initial_energy = initial.energy / elements.size();
+  const double number_of_elements = (std::max)(1, elements.size());
+  result.initial_energy = initial.energy / number_of_elements;
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
@@ -107,7 +115,7 @@ void optimize(PolygonMesh& mesh,
     write_points(mesh, vpm, copy.points, state);
     write_locations(mesh, reference, np, state);
     const Global_measure final = measure<ConcurrencyTag>(state, density, infinity);
-    result.final_energy = final.energy / elements.size();
+    result.final_energy = final.energy / number_of_elements;
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
@@ -137,13 +145,15 @@ template <typename ConcurrencyTag,
           typename ReferenceMesh,
           typename Energy,
           typename NamedParameters,
-          typename NamedParametersReference>
+          typename NamedParametersReference,
+          typename FaceRange = All_faces>
 Result optimize(PolygonMesh& mesh,
                 const ReferenceMesh& reference,
                 const Energy& energy,
                 const Loop_parameters& loop_parameters,
                 const NamedParameters& np,
-                const NamedParametersReference& np_reference)
+                const NamedParametersReference& np_reference,
+                const FaceRange& range = FaceRange())
 {
   const auto start = std::chrono::steady_clock::now();
   const auto& own_np = cgal_parameters(np);
@@ -154,7 +164,7 @@ Result optimize(PolygonMesh& mesh,
   Result result;
   try
   {
-    optimize<ConcurrencyTag>(mesh, reference, energy, loop_parameters, visitor, interruption,
+    optimize<ConcurrencyTag>(range, mesh, reference, energy, loop_parameters, visitor, interruption,
                              own_np, cgal_parameters(np_reference), result);
   }
   catch(const Interrupted&)

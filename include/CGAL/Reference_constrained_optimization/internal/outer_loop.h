@@ -142,7 +142,9 @@ private:
       return;
     const Indexed_mesh& mesh = m_state.mesh;
     const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
-    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+    double triangles = 0;
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+      triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
     const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
     Drift_guard guard; // of no use if that is cut short
     guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
