@@ -47,8 +47,8 @@ void test_model(const std::string& name, double unit_in_last_place)
   const Mesh expected_reference = make_mesh<Mesh>(make_shape(reference));
   const RCO::Result r =
     CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
-  const RCO::Result e = CGAL::reference_constrained_optimize(expected, expected_reference,
-                                                             RCO::Minimum_angle_energy());
+  const RCO::Result e =
+    CGAL::reference_constrained_optimize(expected, expected_reference, RCO::Minimum_angle_energy());
   RCO_CHECK_EQUAL(r.final_energy, e.final_energy);
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   const Shape a = make_shape(mesh), b = make_shape(expected);
@@ -63,9 +63,9 @@ void test_model(const std::string& name, double unit_in_last_place)
               .number_of_free_vertices > 0);
   // mesh and reference of two types
   Mesh mixed = make_mesh<Mesh>(rough);
-  RCO_CHECK_LESS(
-    CGAL::reference_constrained_optimize(mixed, reference, RCO::Minimum_angle_energy()).final_energy,
-    r.initial_energy);
+  RCO_CHECK_LESS(CGAL::reference_constrained_optimize(mixed, reference, RCO::Minimum_angle_energy())
+                   .final_energy,
+                 r.initial_energy);
   // part of it
   M part = make_mesh<M>(rough);
   std::vector<typename boost::graph_traits<M>::face_descriptor> range;
@@ -149,10 +149,8 @@ void test_locations()
 
 // optimizes the faces that `is_in` names, and checks what holds for any of them
 template <typename Tag, typename NamedParameters, typename IsIn>
-RCO::Result optimize_part(Mesh& mesh,
-                          const Mesh& reference,
-                          const NamedParameters& np,
-                          const IsIn& is_in)
+RCO::Result
+optimize_part(Mesh& mesh, const Mesh& reference, const NamedParameters& np, const IsIn& is_in)
 {
   std::list<Face> range; // any range will do
   std::vector<char> may_move(mesh.number_of_vertices(), 1);
@@ -164,8 +162,8 @@ RCO::Result optimize_part(Mesh& mesh,
         may_move[v] = 0;
   range.insert(range.end(), range.begin(), range.end());
   const Shape before = make_shape(mesh);
-  const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(
-    range, mesh, reference, RCO::Minimum_angle_energy(), np);
+  const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(range, mesh, reference,
+                                                                  RCO::Minimum_angle_energy(), np);
   const Shape after = make_shape(mesh);
   std::size_t moved = 0;
   for(std::size_t v = 0; v < before.points.size(); ++v)
@@ -255,7 +253,8 @@ void test_ranges()
     const Scope s("what is outside is its own affair");
     // two components: one on the reference, one far away, and with a quad
     Shape two = joined(rough, torus(10, 6), Vector_3(50, 0, 0));
-    two.faces.push_back({two.add(70, 0, 0), two.add(71, 0, 0), two.add(71, 1, 0), two.add(70, 1, 0)});
+    two.faces.push_back(
+      {two.add(70, 0, 0), two.add(71, 0, 0), two.add(71, 1, 0), two.add(70, 1, 0)});
     mesh = make_mesh<Mesh>(two);
     RCO_CHECK_THROWS(
       CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy()),

@@ -7,8 +7,10 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
+#include <CGAL/Reference_constrained_optimization/internal/text_of.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/iterator.h>
@@ -81,7 +83,7 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
 }
 
 // Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free vertices onto it. A reference
-// that is oriented the other way is turned round.
+// that is oriented the other way is turned round, each component of it by itself.
 template <typename ConcurrencyTag = CGAL::Sequential_tag>
 void place_on_reference(const std::vector<Vector_3>& points,
                         Reference_surface& reference,
@@ -129,9 +131,9 @@ void place_on_reference(const std::vector<Vector_3>& points,
       continue;
     const double distance = (placed.on_reference.position - points[v]).norm();
     if(distance > limit && is_needed(v))
-      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +
-                          " away from the reference, more than a tenth of its diagonal (" +
-                          std::to_string(reference.diagonal()) + ")");
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + text_of(distance) +
+                          " away from the reference, but at most " + text_of(limit) +
+                          ", a tenth of the reference's diagonal, is allowed");
     if(distance > result.largest_initial_distance && is_needed(v))
       result.largest_initial_distance = distance;
     if(state.is_free[v])
@@ -149,20 +151,38 @@ void place_on_reference(const std::vector<Vector_3>& points,
   };
   orient();
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-  double agreement = 0;
+  std::vector<double> agreement(surface.number_of_faces(), 0); // per face of R
+  bool disagrees = false;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
     if(!state.counts(f))
       continue;
     const Vector_3 n = face_normal(mesh, vertex, f);
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      agreement += n.dot(vertex(mesh.corner_vertex[c]).normal);
+    {
+      const Placed_vertex& v = vertex(mesh.corner_vertex[c]);
+      const double d = n.dot(v.normal);
+      agreement[v.on_reference.face] += d;
+      disagrees = disagrees || d < 0;
+    }
   }
-  if(agreement < 0)
+  if(!disagrees)
+    return;
+  std::vector<char> is_left(surface.number_of_faces(), 1), is_reversed(is_left.size(), 0);
+  for(int first = 0; first < surface.number_of_faces(); ++first)
   {
-    reference.reverse();
-    orient();
+    if(!is_left[first])
+      continue;
+    const std::vector<int> component = take_connected_region(surface, first, is_left);
+    double sum = 0;
+    for(const int f : component)
+      sum += agreement[f];
+    if(sum < 0)
+      for(const int f : component)
+        is_reversed[f] = 1;
   }
+  reference.reverse(is_reversed);
+  orient();
 }
 
 } // namespace internal

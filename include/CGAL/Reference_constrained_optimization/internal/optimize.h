@@ -85,6 +85,7 @@ void optimize(const FaceRange& range,
     is_own_reference(mesh, reference, np, np_reference)
       ? copy
       : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference"));
+  check_location_map(surface, np);
   interruption.check();
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
