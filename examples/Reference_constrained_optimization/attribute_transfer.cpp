@@ -103,16 +103,18 @@ try
       continue; // it is nowhere on the surface
     const Rgb color = interpolate(location[v], reference, colors);
     const auto byte = [&](int i) {
-      return static_cast<unsigned char>(std::lround(255 * (std::min)(1., (std::max)(0., color[i]))));
+      return static_cast<unsigned char>(
+        std::lround(255 * (std::min)(1., (std::max)(0., color[i]))));
     };
     written[v] = CGAL::IO::Color(byte(0), byte(1), byte(2));
     // what the same place has when it is searched for, and when the pattern is evaluated there
     const auto searched = PMP::locate_with_AABB_tree(mesh.point(v), tree, reference);
     from_searched = (std::max)(
       from_searched,
-      difference(color, interpolate({searched.first, {{searched.second[0], searched.second[1],
-                                                       searched.second[2]}}},
-                                    reference, colors)));
+      difference(color,
+                 interpolate(
+                   {searched.first, {{searched.second[0], searched.second[1], searched.second[2]}}},
+                   reference, colors)));
     from_pattern = (std::max)(from_pattern, difference(color, pattern(mesh.point(v))));
     moved += mesh.point(v) != reference.point(v);
   }

@@ -142,9 +142,9 @@ try
 
   const RCO::Angle_statistics before = RCO::angle_statistics(reference),
                               after = RCO::angle_statistics(mesh);
-  std::cout << reason(result.status) << " after " << result.running_time
-            << " s: smallest angle " << before.minimum << " -> " << after.minimum << ", mean "
-            << before.mean << " -> " << after.mean << std::endl;
+  std::cout << reason(result.status) << " after " << result.running_time << " s: smallest angle "
+            << before.minimum << " -> " << after.minimum << ", mean " << before.mean << " -> "
+            << after.mean << std::endl;
 
   const std::string name = argc > 2 ? argv[2] : "interruptible_optimization.off";
   std::ofstream out(name);

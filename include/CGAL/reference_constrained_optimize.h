@@ -54,7 +54,8 @@ namespace CGAL {
  *
  * \cgalNamedParamsBegin
  *   \cgalParamNBegin{vertex_point_map}
- *     \cgalParamDescription{a property map from the vertices of `mesh` to points}
+ *     \cgalParamDescription{a property map from the vertices of `mesh` to points. Where its numbers are
+ *                           not `double`, "on the reference" means as close to it as they can be}
  *     \cgalParamType{a model of `ReadWritePropertyMap`}
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, mesh)`}
  *   \cgalParamNEnd
@@ -82,7 +83,8 @@ namespace CGAL {
  *     \cgalParamDefault{`Reference_constrained_optimization::Default_visitor`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_running_time}
- *     \cgalParamDescription{the time in seconds after which no further round is started}
+ *     \cgalParamDescription{the time in seconds after which work that is under way is given up. The mesh holds
+                           the last accepted state then, or is untouched if setup was not over}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{unlimited}
  *   \cgalParamNEnd
@@ -167,9 +169,12 @@ namespace CGAL {
  *   \cgalParamNBegin{vertex_location_map}
  *     \cgalParamDescription{receives for every vertex that is not isolated where it lies on the
  *                           reference: a face and the barycentric coordinates with respect to the
- *                           vertices of that face, the first being `target(halfedge(f, reference))`'s
- *                           predecessor as in `Polygon_mesh_processing::locate()`. The reference
- *                           must be a triangle mesh}
+ *                           vertices of that face, the first being `source(halfedge(f, reference))`
+ *                           as in `Polygon_mesh_processing::locate()`. They are not negative and add
+ *                           up to 1, and `Polygon_mesh_processing::construct_point()` gives the
+ *                           vertex' position but for rounding (of vertices that may not move: the
+ *                           point of the reference closest to it). The reference must be a triangle
+ *                           mesh. Nothing is written if the optimization is stopped during setup}
  *     \cgalParamType{a model of `WritablePropertyMap` with the vertex descriptor of `mesh` as key
  *                    type and `std::pair<face_descriptor, std::array<double, 3>>` as value type}
  *     \cgalParamDefault{unused}
@@ -193,6 +198,10 @@ namespace CGAL {
  *         further from the reference than a tenth of the reference's diagonal, or if a parameter
  *         makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
  *         accepted state.
+ *
+ * Isolated vertices and faces without area are no errors: the former are kept and ignored, the latter
+ * are improved where their vertices may move. A component of the reference that is oriented against
+ * the mesh is taken as if it were oriented like the mesh.
  */
 template <
   typename ConcurrencyTag = CGAL::Sequential_tag,
