@@ -6,6 +6,7 @@
 
 #include "test_meshes.h"
 
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
@@ -284,9 +285,38 @@ void test_ranges()
   }
 }
 
+// triangles and quads side by side, with an energy that is defined on both
+void test_mixed_faces()
+{
+  const Scope scope("triangles and quads");
+  const Shape quads = torus(30, 14, 1, 0.4, true), triangles = torus(30, 14);
+  Shape mixed = quads;
+  mixed.faces.clear();
+  for(std::size_t f = 0; f < quads.faces.size(); ++f)
+    if(f % 30 < 15)
+      mixed.faces.push_back(quads.faces[f]);
+    else
+      for(const std::size_t t : {2 * f, 2 * f + 1})
+        mixed.faces.push_back(triangles.faces[t]);
+  const Mesh source = make_mesh<Mesh>(mixed), reference = make_mesh<Mesh>(triangles);
+  for(const bool on_surface : {true, false})
+  {
+    Mesh mesh = make_mesh<Mesh>(scrambled(mixed, 0.2, 4, onto_torus(1, 0.4)));
+    const RCO::Result r = CGAL::reference_constrained_optimize(
+      mesh, reference, RCO::Compatible_remeshing_energy(source),
+      params::use_on_surface_steps(on_surface).drift_bound(0.05));
+    RCO_CHECK_LESS(r.final_energy - 4, 0.5 * (r.initial_energy - 4));
+    RCO_CHECK_LESS_EQUAL(r.number_of_flips + r.number_of_nonconvex_quads,
+                         r.initial_number_of_flips + r.initial_number_of_nonconvex_quads);
+    const RCO::Distance_to_reference distance = RCO::distance_to_reference(mesh, reference);
+    RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
+  }
+}
+
 int main()
 {
   test_models();
+  test_mixed_faces();
   test_locations();
   test_ranges();
   return report();
