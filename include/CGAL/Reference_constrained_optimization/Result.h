@@ -80,7 +80,7 @@ struct Result
   /// it was off.
   double drift_bound = std::numeric_limits<double>::infinity();
   /// how far mesh and reference were apart at the start, in units of length: the largest distance of
-  /// the middles of the mesh's edges and faces from the reference, and of the reference's vertices from
+  /// the middles of the mesh's edges and faces from the reference, and of the vertices and middles of creases of the reference from
   /// the mesh. 0 if the drift was not bounded; `drift()` measures it always, and more closely.
   double initial_drift = 0;
   double drift = 0; ///< the same at the end; no less than the true distance of any of these points.

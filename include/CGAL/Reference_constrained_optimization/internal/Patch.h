@@ -66,10 +66,10 @@ struct Patch
   };
   std::vector<Sample> samples;
 
-  // a vertex of R whose closest point of the mesh is in the patch
+  // a point of R whose closest point of the mesh is in the patch
   struct Guest
   {
-    int vertex;      // of R
+    int witness;     // of R
     int polygon;     // local face that holds its closest point
     double distance; // to it
     double bound;

@@ -46,6 +46,7 @@ public:
   {
     split(copy);
     compute_normals();
+    find_creases();
     m_diagonal = bounding_box_diagonal(m_points);
     m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
     m_area = surface_area(m_mesh, m_points);
@@ -90,6 +91,29 @@ public:
   Vector_3 face_normal(int f) const
   {
     return (corner_point(f, 1) - corner_point(f, 0)).cross(corner_point(f, 2) - corner_point(f, 0));
+  }
+
+  // whether R is sharp at the edge at corner c
+  bool is_crease(int c) const
+  {
+    const double cosine = 0.9; // of the angle between the normals on both sides
+    const int o = m_mesh.opposite[c];
+    if(o < 0)
+      return false;
+    const Vector_3 a = face_normal(m_mesh.corner_face[c]), b = face_normal(m_mesh.corner_face[o]);
+    return a.dot(b) < cosine * a.norm() * b.norm();
+  }
+
+  // Points of R that a mesh may not leave: first the vertices, then the middles of the creases (given by
+  // a corner each), where a mesh with vertices on both sides is furthest away.
+  int number_of_witnesses() const { return m_mesh.number_of_vertices() + int(m_creases.size()); }
+  int crease(int witness) const { return m_creases[witness - m_mesh.number_of_vertices()]; }
+  Vector_3 witness(int i) const
+  {
+    if(i < m_mesh.number_of_vertices())
+      return m_points[i];
+    const int c = crease(i);
+    return 0.5 * (m_points[m_mesh.source(c)] + m_points[m_mesh.target(c)]);
   }
 
   // turns the normals of whole components round, given by their faces
@@ -263,9 +287,17 @@ private:
     }
   }
 
+  void find_creases()
+  {
+    for(int c = 0; c < m_mesh.number_of_corners(); ++c)
+      if(c < m_mesh.opposite[c] && is_crease(c))
+        m_creases.push_back(c);
+  }
+
   Indexed_mesh m_mesh;
   std::vector<Vector_3> m_points;
   std::vector<Vector_3> m_normals;
+  std::vector<int> m_creases; // corners
   std::vector<int> m_original_face;
   std::unique_ptr<Search> m_search;
   double m_diagonal = 0, m_mean_edge_length = 0, m_area = 0;

@@ -263,7 +263,7 @@ private:
         }
   }
 
-  // looks where the vertices of R that are guests of the patch find it now
+  // looks where the points of R that are guests of the patch find it now
   void visit_guests(const Patch& patch, const Reference_surface& reference)
   {
     if(m_guests.empty())

@@ -82,16 +82,10 @@ Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector
   while(true)
   {
     const int begin = mesh.face_begin[best.face];
-    int zeros = 0, zero = -1, one = -1;
-    for(int i = 0; i < 3; ++i)
-      if(best.barycentric(i) == 0)
-      {
-        ++zeros;
-        zero = i;
-      }
-      else
-        one = i;
-    if(zeros == 0)
+    int zero = 0, one = 0;
+    best.barycentric.minCoeff(&zero);
+    best.barycentric.maxCoeff(&one);
+    if(best.barycentric(zero) > 0)
       return best;
 
     Foot candidate = best;
@@ -100,7 +94,9 @@ Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector
       if(foot.squared_distance < candidate.squared_distance)
         candidate = foot;
     };
-    if(zeros == 1)
+    // next to a vertex the way on may lead through any face at it
+    const double at_vertex = 1 - 1e-9;
+    if(best.barycentric(one) < at_vertex)
     {
       const int o = mesh.opposite[mesh.next(begin + zero)];
       if(o >= 0)

@@ -17,17 +17,8 @@ namespace internal {
 inline Vector_3
 crease_direction(const Reference_surface& reference, const Surface_point& p, const Vector_3& wanted)
 {
-  const double cosine = 0.9; // of the angle between the normals on both sides
   const Indexed_mesh& mesh = reference.mesh();
   const double on = 1e-6; // of a height
-  const auto is_crease = [&](int c) {
-    const int o = mesh.opposite[c];
-    if(o < 0)
-      return false;
-    const Vector_3 a = reference.face_normal(mesh.corner_face[c]),
-                   b = reference.face_normal(mesh.corner_face[o]);
-    return a.dot(b) < cosine * a.norm() * b.norm();
-  };
   const auto along = [&](int c) {
     return Vector_3(
       (reference.points()[mesh.target(c)] - reference.points()[mesh.source(c)]).normalized());
@@ -38,7 +29,7 @@ crease_direction(const Reference_surface& reference, const Surface_point& p, con
   if(p.barycentric(largest) < 1 - on)
   {
     for(int i = 0; i < 3; ++i) // the corner's edge is opposite to the corner before it
-      if(p.barycentric((i + 2) % 3) < on && is_crease(begin + i))
+      if(p.barycentric((i + 2) % 3) < on && reference.is_crease(begin + i))
         return along(begin + i);
     return Vector_3::Zero();
   }
@@ -48,7 +39,7 @@ crease_direction(const Reference_surface& reference, const Surface_point& p, con
   for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
   {
     const int c = mesh.vertex_corners[k];
-    if(!is_crease(c))
+    if(!reference.is_crease(c))
       continue;
     ++count;
     const Vector_3 d = along(c);

@@ -22,9 +22,9 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // How far mesh and reference are apart, both ways: at the middles of the mesh's edges and triangles,
-// and at the vertices of R. Vertices of the mesh on R do not keep its faces from leaving R, nor from
-// cutting R's features off. A patch takes its samples, and the vertices of R that are guests of its
-// faces, along; the acceptance test looks after them, and they return with the accepted patch.
+// and at the vertices and the middles of the creases of R. Vertices of the mesh on R do not keep its
+// faces from leaving R, nor from cutting R's features off. A patch takes its samples, and the points of R
+// that are guests of its faces, along; the acceptance test looks after them, and they return with the accepted patch.
 //
 // What is beyond the bound on input may not go further than it is.
 class Drift_guard
@@ -50,7 +50,7 @@ public:
     m_bound = at_least ? (std::max)(bound, m_initial_drift / Drift_barrier::last_part) : bound;
     if(!at_least && guests > m_bound)
       for(const double d : m_distance)
-        m_vertex_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
+        m_witness_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
     if(!at_least && samples > m_bound)
       for(const double d : distances)
         m_face_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
@@ -106,7 +106,7 @@ public:
       for(int r = m_first[patch.faces[f]]; r >= 0; r = m_next[r])
       {
         patch.guests.push_back(
-          {r, int(f), m_distance[r], m_vertex_bounds.empty() ? m_bound : m_vertex_bounds[r]});
+          {r, int(f), m_distance[r], m_witness_bounds.empty() ? m_bound : m_witness_bounds[r]});
         Patch::Guest& guest = patch.guests.back();
         if(Drift_barrier::is_felt(guest.distance, guest.bound))
           locate_guest(patch, state.reference, vertex, guest);
@@ -143,7 +143,7 @@ public:
     for(const int f : faces)
       m_first[f] = -1;
     for(const Patch::Guest& g : guests)
-      settle(g.vertex, faces[g.polygon], g.distance);
+      settle(g.witness, faces[g.polygon], g.distance);
     for(const auto& s : samples)
       m_known[s.first] = s.second;
   }
@@ -192,12 +192,30 @@ private:
     return known_sample(mesh, patch.faces[s / 4], s % 4);
   }
 
+  // a face with the vertex, and with both of an edge; -1 if there is none
+  static int face_at(const Indexed_mesh& mesh, int v)
+  {
+    return mesh.corner_face[mesh.vertex_corners[mesh.vertex_begin[v]]];
+  }
+  static int face_at(const Indexed_mesh& mesh, int v, int w)
+  {
+    if(v < 0 || w < 0)
+      return -1;
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int c = mesh.vertex_corners[k];
+      if(mesh.target(c) == w || mesh.source(mesh.previous(c)) == w)
+        return mesh.corner_face[c];
+    }
+    return -1;
+  }
+
   template <typename ConcurrencyTag>
   void welcome_guests(const Optimization_state& state, Interruption* interruption)
   {
     const Indexed_mesh& mesh = state.mesh;
     const Indexed_mesh& reference = state.reference.mesh();
-    const int n = reference.number_of_vertices();
+    const int n = state.reference.number_of_witnesses(), vertices = reference.number_of_vertices();
     m_first.assign(mesh.number_of_faces(), -1);
     m_next.assign(n, -1);
     m_distance.assign(n, 0);
@@ -206,20 +224,26 @@ private:
       copy.points.push_back(v.position);
     const Point_index index(copy.points,
                             [&](int v) { return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1]; });
-    std::vector<int> face(n, -1);
-    bool all_are_twins = true;
+    std::vector<int> twin(vertices, -1), face(n, -1);
+    const auto is_used = [&](int r) {
+      return r >= vertices || reference.vertex_begin[r] < reference.vertex_begin[r + 1];
+    };
+    bool all_are_known = true;
     for(int r = 0; r < n; ++r)
     {
-      const int twin = reference.vertex_begin[r] == reference.vertex_begin[r + 1]
-                         ? -1
-                         : index.find(state.reference.points()[r]);
-      if(twin >= 0)
-        face[r] = mesh.corner_face[mesh.vertex_corners[mesh.vertex_begin[twin]]];
+      if(r < vertices && is_used(r))
+        twin[r] = index.find(state.reference.points()[r]);
+      if(r < vertices)
+        face[r] = twin[r] < 0 ? -1 : face_at(mesh, twin[r]);
       else
-        all_are_twins = false;
+      {
+        const int c = state.reference.crease(r);
+        face[r] = face_at(mesh, twin[reference.source(c)], twin[reference.target(c)]);
+      }
+      all_are_known = all_are_known && (face[r] >= 0 || !is_used(r));
     }
     check(interruption);
-    if(!all_are_twins)
+    if(!all_are_known)
     {
       copy.mesh = mesh;
       const Reference_surface surface(copy);
@@ -228,9 +252,9 @@ private:
         for(int r = begin; r < end; ++r)
         {
           check_now_and_then(interruption, r);
-          if(face[r] < 0 && reference.vertex_begin[r] < reference.vertex_begin[r + 1])
+          if(face[r] < 0 && is_used(r))
           {
-            const Vector_3& p = state.reference.points()[r];
+            const Vector_3 p = state.reference.witness(r);
             const Surface_point foot = surface.closest(p);
             face[r] = surface.original_face(foot.face);
             if(state.counts(face[r]))
@@ -305,12 +329,12 @@ private:
 
   Drift_barrier m_barrier;
   double m_bound = 0, m_initial_drift = 0;
-  std::vector<double> m_face_bounds;   // per face of the mesh; empty if all are the bound
-  std::vector<double> m_vertex_bounds; // per vertex of R; empty if all are the bound
+  std::vector<double> m_face_bounds;    // per face of the mesh; empty if all are the bound
+  std::vector<double> m_witness_bounds; // per witness; empty if all are the bound
   std::vector<Known> m_known; // four per face if all are triangles; no less than the true distance
-  // the guests of every face are a list: the first one, and the next one after each vertex of R
+  // the guests of every face are a list: the first one, and the next one after each witness
   std::vector<int> m_first, m_next;
-  std::vector<double> m_distance; // per vertex of R
+  std::vector<double> m_distance; // per witness
 };
 
 } // namespace internal

@@ -6,14 +6,18 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_DRIFT_SAMPLES_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_towards.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Where a mesh leaves R is seen at the middles of its edges and triangles, and from R's vertices.
+// Where a mesh leaves R is seen at the middles of its edges and triangles, and from R's vertices and creases.
 // Triangle t has the samples 4 t + i: the middle of its edge i for i < 3 (held by one of the two
 // triangles of an edge), its own for i = 3.
 
@@ -58,7 +62,8 @@ Vector_3 triangle_point(const Indexed_mesh& mesh,
   return p;
 }
 
-// Looks for the closest point of R, from where it was last.
+// Looks for the closest point of R, from where it was last and from the corners. At a crease that is a
+// matter of the side: the descent ends where it begins if the faces make an acute angle.
 template <typename VertexAccess>
 void locate_sample(const Patch& patch,
                    const Reference_surface& reference,
@@ -69,36 +74,51 @@ void locate_sample(const Patch& patch,
   const Indexed_mesh& mesh = patch.triangles();
   const int i = s % 4, number_of_corners = i == 3 ? 3 : 2;
   const int* corners = &mesh.corner_vertex[mesh.face_begin[s / 4]];
-  const int f = vertex(corners[i % 3]).on_reference.face;
+  const auto corner = [&](int k) -> const Placed_vertex& { return vertex(corners[(i + k) % 3]); };
+  const int f = corner(0).on_reference.face;
   bool is_inside = true; // of a face of R; constrained vertices may be off R
   for(int k = 0; k < number_of_corners && is_inside; ++k)
-  {
-    const Placed_vertex& v = vertex(corners[(i + k) % 3]);
-    is_inside = v.on_reference.face == f && v.position == v.on_reference.position;
-  }
+    is_inside =
+      corner(k).on_reference.face == f && corner(k).position == corner(k).on_reference.position;
   if(is_inside)
   {
     sample.face = f;
     sample.distance = 0;
     return;
   }
-  const Vector_3 p = triangle_point(mesh, vertex, s / 4, sample_barycentric(s % 4));
-  const Surface_point foot = reference.descend(p, sample.face >= 0 ? sample.face : f);
-  sample.face = foot.face;
-  sample.direction = p - foot.position;
-  sample.distance = sample.direction.norm();
-  if(sample.distance > 0)
-    sample.direction /= sample.distance;
+  const Vector_3 p = triangle_point(mesh, vertex, s / 4, sample_barycentric(i));
+  const double unfelt = Drift_barrier::free_part * patch.bound_of_triangle(s / 4);
+  sample.distance = std::numeric_limits<double>::infinity();
+  std::array<int, 4> starts;
+  int number_of_starts = 0;
+  const auto start = [&](int face) {
+    const auto end = starts.begin() + number_of_starts;
+    if(sample.distance <= unfelt || std::find(starts.begin(), end, face) != end)
+      return;
+    starts[number_of_starts++] = face;
+    const Surface_point foot = reference.descend(p, face);
+    const Vector_3 way = p - foot.position;
+    const double distance = way.norm();
+    if(!(distance < sample.distance))
+      return;
+    sample.face = foot.face;
+    sample.distance = distance;
+    sample.direction = distance > 0 ? Vector_3(way / distance) : way;
+  };
+  if(sample.face >= 0)
+    start(sample.face);
+  for(int k = 0; k < number_of_corners; ++k)
+    start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
 }
 
-// Looks for the closest point of the patch to a vertex of R, from where it was last.
+// Looks for the closest point of the patch to a point of R, from where it was last.
 template <typename VertexAccess>
 void locate_guest(const Patch& patch,
                   const Reference_surface& reference,
                   const VertexAccess& vertex,
                   Patch::Guest& guest)
 {
-  const Vector_3& p = reference.points()[guest.vertex];
+  const Vector_3 p = reference.witness(guest.witness);
   const Foot foot = descend_to(
     patch.triangles(), [&](int v) -> const Vector_3& { return vertex(v).position; }, p,
     patch.triangle_of(guest.polygon));
