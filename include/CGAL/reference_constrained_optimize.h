@@ -110,8 +110,8 @@ namespace CGAL {
  *   \cgalParamNBegin{drift_bound}
  *     \cgalParamDescription{how far mesh and reference may be apart, in units of length: a smooth
  *                           barrier \f$ w\,u^2 / (1 - u) \f$ on the distances of the middles of edges
- *                           and faces from the reference and of the reference's vertices from the
- *                           mesh is added to the energy, and no step may take one of them beyond 1.3
+ *                           and faces from the reference, and of the reference's vertices and the
+ *                           middles of its creases (by more than 25 degrees) from the mesh, is added to the energy, and no step may take one of them beyond 1.2
  *                           times the bound. What is further away on input may not become worse.
  *                           Infinity switches the barrier off}
  *     \cgalParamType{`double`}

@@ -960,14 +960,14 @@ void test_drift(const std::string& name)
     if(bound == infinity)
     {
       RCO_CHECK_EQUAL(result.drift_bound, infinity);
-      RCO_CHECK_LESS(1.3 * 0.25 * edge, drift); // there is something to prevent
+      RCO_CHECK_LESS(1.2 * 0.25 * edge, drift); // there is something to prevent
     }
     else
     {
       RCO_CHECK_NEAR(result.drift_bound, bound < 0 ? 0.25 * edge : bound, 1e-12 * edge);
       RCO_CHECK_LESS_EQUAL(result.initial_drift, 1e-12 * edge);
       RCO_CHECK_LESS_EQUAL(drift, result.drift + 1e-12 * edge);
-      RCO_CHECK_LESS_EQUAL(result.drift, 1.3 * result.drift_bound);
+      RCO_CHECK_LESS_EQUAL(result.drift, 1.2 * result.drift_bound);
       RCO_CHECK_LESS(RCO::drift(mesh, input).maximum(), 2 * result.drift_bound);
     }
     RCO_CHECK_LESS_EQUAL(drift, last);

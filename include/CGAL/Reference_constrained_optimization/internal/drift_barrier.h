@@ -11,7 +11,7 @@ namespace internal {
 
 // What a sample of one surface adds to the energy at a distance r from the other one: with
 // u = ((r - a) / (b - a))^2 for a bound b it is w u^2 / (1 - u), and nothing below a, a part of b. It
-// is continued quadratically in u beyond u = 0.5: it is soft, for a stiffer one would hold up Newton's
+// is continued quadratically in u beyond u = 0.6: it is soft, for a stiffer one would hold up Newton's
 // method, and finite for inputs beyond the bound. Beyond `last_part` b no step may take a sample.
 class Drift_barrier
 {
@@ -19,7 +19,7 @@ public:
   // `weight` is an energy
   explicit Drift_barrier(double weight = 0) : m_weight(weight) {}
 
-  static constexpr double free_part = 0.3, last_part = 1.3;
+  static constexpr double free_part = 0.6, last_part = 1.2;
 
   static bool is_felt(double distance, double bound) { return distance > free_part * bound; }
 
@@ -52,7 +52,7 @@ public:
 private:
   static Derivatives jet(double u)
   {
-    const double last = 0.5;
+    const double last = 0.6;
     const double v = u < last ? u : last, rest = 1 - v;
     Derivatives d;
     d.value = v * v / rest;

@@ -213,13 +213,14 @@ private:
     return m_parameters.number_of_iterations > 0;
   }
 
-  // A large patch that was refused may be held up by a few places: the next iteration visits the same
-  // faces in smaller ones. False if that is no way out.
+  // A large patch that was refused, or whose steps were cut to small parts, may be held up by a few
+  // places: the next iteration visits the same faces in smaller ones. False if that is no way out.
   bool divide_further()
   {
     const int smallest = 1000, parts = 4;
     const int size = m_partition.patch_size() / parts;
-    if(!m_parameters.use_on_surface_steps || !m_has_refused || size < smallest)
+    const bool is_held_up = m_has_refused || m_taken < 0.8 * m_could_move;
+    if(!m_parameters.use_on_surface_steps || !is_held_up || size < smallest)
       return false;
     m_partition.set_patch_size(size);
     return true;
