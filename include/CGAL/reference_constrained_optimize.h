@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
@@ -53,7 +54,8 @@ namespace CGAL {
  *
  * \cgalNamedParamsBegin
  *   \cgalParamNBegin{vertex_point_map}
- *     \cgalParamDescription{a property map from the vertices of `mesh` to points}
+ *     \cgalParamDescription{a property map from the vertices of `mesh` to points. Where its numbers are
+ *                           not `double`, "on the reference" means as close to it as they can be}
  *     \cgalParamType{a model of `ReadWritePropertyMap`}
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, mesh)`}
  *   \cgalParamNEnd
@@ -81,7 +83,8 @@ namespace CGAL {
  *     \cgalParamDefault{`Reference_constrained_optimization::Default_visitor`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_running_time}
- *     \cgalParamDescription{the time in seconds after which no further round is started}
+ *     \cgalParamDescription{the time in seconds after which work that is under way is given up. The mesh holds
+                           the last accepted state then, or is untouched if setup was not over}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{unlimited}
  *   \cgalParamNEnd
@@ -166,9 +169,12 @@ namespace CGAL {
  *   \cgalParamNBegin{vertex_location_map}
  *     \cgalParamDescription{receives for every vertex that is not isolated where it lies on the
  *                           reference: a face and the barycentric coordinates with respect to the
- *                           vertices of that face, the first being `target(halfedge(f, reference))`'s
- *                           predecessor as in `Polygon_mesh_processing::locate()`. The reference
- *                           must be a triangle mesh}
+ *                           vertices of that face, the first being `source(halfedge(f, reference))`
+ *                           as in `Polygon_mesh_processing::locate()`. They are not negative and add
+ *                           up to 1, and `Polygon_mesh_processing::construct_point()` gives the
+ *                           vertex' position but for rounding (of vertices that may not move: the
+ *                           point of the reference closest to it). The reference must be a triangle
+ *                           mesh. Nothing is written if the optimization is stopped during setup}
  *     \cgalParamType{a model of `WritablePropertyMap` with the vertex descriptor of `mesh` as key
  *                    type and `std::pair<face_descriptor, std::array<double, 3>>` as value type}
  *     \cgalParamDefault{unused}
@@ -192,13 +198,25 @@ namespace CGAL {
  *         further from the reference than a tenth of the reference's diagonal, or if a parameter
  *         makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
  *         accepted state.
+ *
+ * Isolated vertices and faces without area are no errors: the former are kept and ignored, the latter
+ * are improved where their vertices may move. A component of the reference that is oriented against
+ * the mesh is taken as if it were oriented like the mesh.
  */
-template <typename ConcurrencyTag = CGAL::Sequential_tag,
-          typename PolygonMesh,
-          typename ReferenceMesh,
-          typename Energy,
-          typename NamedParameters = parameters::Default_named_parameters,
-          typename NamedParametersReference = parameters::Default_named_parameters>
+template <
+  typename ConcurrencyTag = CGAL::Sequential_tag,
+  typename PolygonMesh,
+  typename ReferenceMesh,
+  typename Energy,
+  typename NamedParameters = parameters::Default_named_parameters,
+  typename NamedParametersReference = parameters::Default_named_parameters
+#ifndef DOXYGEN_RUNNING
+  ,
+  std::enable_if_t<
+    !Reference_constrained_optimization::internal::Is_face_range<PolygonMesh, ReferenceMesh>::value,
+    int> = 0
+#endif
+  >
 Reference_constrained_optimization::Result reference_constrained_optimize(
   PolygonMesh& mesh,
   const ReferenceMesh& reference,
@@ -214,6 +232,59 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   return internal::optimize<ConcurrencyTag>(
     mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
     np_reference);
+}
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * does the same for a part of a mesh.
+ *
+ * Vertices that have a face outside the range do not move, not by a bit. The energies of the result
+ * are means over the elements of the range's faces, its drift is that of these faces, and the number
+ * of free vertices is counted among them; flips, fold edges and non-convex quads are counted in the
+ * whole mesh. Nothing is asked of the faces outside but that the mesh is one of triangles and quads:
+ * the energy need not be defined on them, and they may be far from the reference. What an energy
+ * derives from the mesh, such as its mean edge length and area, is that of the whole mesh.
+ *
+ * An empty range is nothing to do.
+ *
+ * \tparam FaceRange a model of `ConstRange` with the face descriptor of `PolygonMesh` as value type
+ *
+ * \param face_range the faces to be optimized; one that is named twice counts once.
+ *
+ * All other parameters, the result and the exceptions are those of the function for a whole mesh.
+ */
+template <
+  typename ConcurrencyTag = CGAL::Sequential_tag,
+  typename FaceRange,
+  typename PolygonMesh,
+  typename ReferenceMesh,
+  typename Energy,
+  typename NamedParameters = parameters::Default_named_parameters,
+  typename NamedParametersReference = parameters::Default_named_parameters
+#ifndef DOXYGEN_RUNNING
+  ,
+  std::enable_if_t<
+    Reference_constrained_optimization::internal::Is_face_range<FaceRange, PolygonMesh>::value,
+    int> = 0
+#endif
+  >
+Reference_constrained_optimization::Result reference_constrained_optimize(
+  const FaceRange& face_range,
+  PolygonMesh& mesh,
+  const ReferenceMesh& reference,
+  const Energy& energy,
+  const NamedParameters& np = parameters::default_values(),
+  const NamedParametersReference& np_reference = parameters::default_values())
+{
+  namespace internal = Reference_constrained_optimization::internal;
+#ifndef CGAL_LINKED_WITH_TBB
+  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
+                "Parallel_tag is enabled but TBB is unavailable.");
+#endif
+  return internal::optimize<ConcurrencyTag>(
+    mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
+    np_reference, face_range);
 }
 
 } // namespace CGAL

@@ -6,12 +6,14 @@
 
 #include "test_meshes.h"
 
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/Polyhedron_3.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -291,7 +293,17 @@ void test_bad_meshes()
     Shape bad = rough;
     bad.points[23] *= 2;
     M mesh = make_mesh<M>(bad);
-    refuses(mesh, reference, energy, np, "mesh: vertex 23 ");
+    refuses(mesh, reference, energy, np, "mesh: vertex 23 is 1.0");
+    refuses(mesh, reference, energy, np, "at most 0.34");
+    // small numbers are told as well
+    Shape small = bad;
+    for(Vector_3& p : small.points)
+      p *= 1e-9;
+    Shape small_sphere = sphere;
+    for(Vector_3& p : small_sphere.points)
+      p *= 1e-9;
+    mesh = make_mesh<M>(small);
+    refuses(mesh, make_mesh<M>(small_sphere), energy, np, "at most 3.4");
     // a little is fine, and is told
     bad = rough;
     bad.points[23] *= 1.05;
@@ -307,6 +319,31 @@ void test_bad_meshes()
     flat.triangle(0, 1, 2);
     M mesh = make_mesh<M>(rough);
     refuses(mesh, make_mesh<M>(flat), energy, np, "reference: every face has zero area");
+    Shape huge = sphere;
+    for(Vector_3& p : huge.points)
+      p *= 1e200;
+    refuses(mesh, make_mesh<M>(huge), energy, np, "reference: the coordinates are so large");
+  }
+  {
+    const Scope scope("energies for other faces");
+    M mesh = make_mesh<M>(rough);
+    refuses(mesh, reference, RCO::Compatible_remeshing_energy(make_mesh<M>(icosphere(0))), np,
+            "face 0 has the vertices");
+    Shape more = rough;
+    more.faces.pop_back();
+    refuses(mesh, reference, RCO::Compatible_remeshing_energy(make_mesh<M>(more)), np,
+            "face " + std::to_string(more.faces.size()) + " of the mesh has no counterpart");
+    more = rough;
+    more.add(0, 0, 1);
+    refuses(mesh, reference, RCO::Compatible_remeshing_energy(make_mesh<M>(more)), np,
+            "the source has " + std::to_string(more.points.size()) + " vertices");
+    M quads = make_mesh<M>(cube(2, true));
+    refuses(quads, quads, energy, np, "face 0 has 4 vertices");
+    typedef typename boost::graph_traits<M>::face_descriptor Face;
+    typedef std::pair<Face, std::array<double, 3>> Location;
+    auto location = get(CGAL::dynamic_vertex_property_t<Location>(), quads);
+    refuses(quads, quads, RCO::Quad_angle_energy(), params::vertex_location_map(location),
+            "reference: face 0 is a quad");
   }
 }
 
@@ -406,10 +443,94 @@ void test_bad_data()
     for(const double value : {-1e-9, nan})
       refuses(mesh, reference, energy, params::energy_tolerance(value), "energy_tolerance");
     refuses(mesh, reference, energy, params::maximum_patch_size(-1), "maximum_patch_size");
+    refuses(mesh, reference, energy, params::number_of_iterations(-1), "number_of_iterations");
+    for(const double value : {-1., nan, 1e300, 0.5})
+    {
+      refuses(mesh, reference, energy, params::maximum_patch_size(value), "maximum_patch_size");
+      refuses(mesh, reference, energy, params::number_of_iterations(value), "number_of_iterations");
+    }
+    for(const double value : {-1e-9, nan})
+      refuses(mesh, reference, energy, params::drift_bound(value), "drift_bound");
+    refuses(mesh, reference, energy, params::energy_tolerance(-1e-9), "-1e-09");
+  }
+  {
+    const Scope scope("edges that are not manifold");
+    // four triangles around an edge that is in fact two
+    Mesh four;
+    std::vector<Vertex> v;
+    for(const Point& p : {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0), Point(0, -1, 0),
+                          Point(0, 0, 1), Point(0, 0, -1), Point(0, 0, 0), Point(1, 0, 0)})
+      v.push_back(four.add_vertex(p));
+    four.add_face(v[0], v[1], v[2]);
+    four.add_face(v[1], v[0], v[3]);
+    four.add_face(v[6], v[7], v[4]);
+    four.add_face(v[7], v[6], v[5]);
+    for(const Mesh::Halfedge_index h : four.halfedges())
+      for(const int i : {0, 1})
+        if(four.target(h) == v[6 + i])
+          four.set_target(h, v[i]);
+    for(const int i : {6, 7})
+      four.set_halfedge(v[i], Mesh::null_halfedge());
+    refuses(four, four, energy, np, "mesh: the edge between vertices 0 and 1");
+    Mesh good = make_mesh<Mesh>(plane_grid(2, 2));
+    refuses(good, four, energy, np, "reference: the edge between vertices 0 and 1");
   }
   // an error is an std::invalid_argument, too
   const std::invalid_argument& as_standard = RCO::Invalid_input("text");
   RCO_CHECK_EQUAL(std::string(as_standard.what()), std::string("text"));
+}
+
+// what is unusual, but no error
+void test_odd_data()
+{
+  const RCO::Minimum_angle_energy energy;
+  const Shape sphere = icosphere(2), rough = scrambled(sphere, 0.3, 1, onto_sphere);
+  const Mesh start = make_mesh<Mesh>(rough);
+  Mesh plain = start;
+  const RCO::Result expected =
+    CGAL::reference_constrained_optimize(plain, make_mesh<Mesh>(sphere), energy);
+  {
+    const Scope scope("a reference oriented the other way");
+    Mesh mesh = start;
+    const RCO::Result r =
+      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(turned_round(sphere)), energy);
+    RCO_CHECK_EQUAL(r.initial_number_of_flips, expected.initial_number_of_flips);
+    RCO_CHECK_EQUAL(r.number_of_flips, std::size_t(0));
+    RCO_CHECK_EQUAL(r.number_of_fold_edges, std::size_t(0));
+    RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);
+    // the mesh inside out
+    mesh = make_mesh<Mesh>(turned_round(rough));
+    const RCO::Result out =
+      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(sphere), energy);
+    RCO_CHECK_EQUAL(out.number_of_flips + out.number_of_fold_edges, std::size_t(0));
+    RCO_CHECK_NEAR(out.final_energy, expected.final_energy, 0.02 * expected.final_energy);
+  }
+  for(const bool first : {false, true})
+  {
+    const Scope scope("one component of two oriented the other way");
+    const Shape turned = turned_round(sphere);
+    const Vector_3 shift(3, 0, 0);
+    Mesh mesh = make_mesh<Mesh>(joined(rough, rough, shift));
+    const Mesh reference =
+      make_mesh<Mesh>(first ? joined(turned, sphere, shift) : joined(sphere, turned, shift));
+    const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, energy);
+    RCO_CHECK_EQUAL(r.initial_number_of_flips, 2 * expected.initial_number_of_flips);
+    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, std::size_t(0));
+    RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);
+  }
+  {
+    const Scope scope("isolated vertices");
+    Shape with = rough;
+    with.add(1e6, 0, 0);
+    Shape reference = sphere;
+    reference.add(0, -1e6, 3);
+    Mesh mesh = make_mesh<Mesh>(with);
+    const RCO::Result r =
+      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(reference), energy);
+    RCO_CHECK_EQUAL(mesh.number_of_vertices(), Mesh::size_type(with.points.size()));
+    RCO_CHECK(mesh.point(Vertex(int(rough.points.size()))) == Point(1e6, 0, 0));
+    RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);
+  }
 }
 
 int main()
@@ -417,5 +538,6 @@ int main()
   test_chains();
   test_calls();
   test_bad_data();
+  test_odd_data();
   return report();
 }

@@ -401,7 +401,7 @@ void test_normals()
   }
   const internal::Surface_point s = sphere.point(5, Vector_3(0.2, 0.3, 0.5));
   const Vector_3 n = sphere.normal(s);
-  sphere.reverse();
+  sphere.reverse(std::vector<char>(sphere.mesh().number_of_faces(), 1));
   RCO_CHECK(sphere.normal(s) == -n);
 
   // area-weighted at a corner of a cube: n * n times as many triangles do not matter

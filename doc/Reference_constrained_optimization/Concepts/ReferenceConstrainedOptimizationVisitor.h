@@ -9,7 +9,7 @@ if the caller wants to read from it afterwards; otherwise a copy is used.
 All calls come from the thread that called `CGAL::reference_constrained_optimize()`. If one of them
 throws, the mesh holds the last accepted state and the exception reaches the caller. Rounds follow
 each other within an iteration; those that visit the worst elements at the end come after the last
-iteration and belong to none. If no vertex is free to move there is no call at all.
+iteration and belong to none. If no vertex is free to move, `go_further()` is all that is called.
 
 \cgalHasModel{CGAL::Reference_constrained_optimization::Default_visitor}
 */
@@ -32,7 +32,10 @@ public:
   /// keep its result. Patches that were not visited because the round was cut short are left out.
   void on_patch_end(const CGAL::Reference_constrained_optimization::Patch_report& report);
 
-  /// returns `false` to end the optimization; the mesh then holds the last accepted state. It is
-  /// asked before every round, and with `CGAL::Sequential_tag` before every patch.
+  /// Returns `false` to end the optimization. It is asked often: between the steps of all that takes
+  /// long, within patches, too, and while the calling thread waits for others; on a mesh of 50000
+  /// vertices more than ten times per second. It should be quick to answer, and is not asked again
+  /// after it said no. Work on patches that are not finished is given up, and the mesh holds the last
+  /// accepted state. During setup, which precedes the first iteration, the mesh is left as it was.
   bool go_further();
 };

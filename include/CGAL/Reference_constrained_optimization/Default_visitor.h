@@ -50,7 +50,8 @@ struct Default_visitor
   void on_round_end() {}
   /// is called once for every patch of a round, after the decision on it.
   void on_patch_end(const Patch_report& /* report */) {}
-  /// is asked often; `false` ends the optimization at the last accepted state.
+  /// is asked often, also within patches and during setup; `false` ends the optimization at the last
+  /// accepted state.
   bool go_further() { return true; }
 };
 

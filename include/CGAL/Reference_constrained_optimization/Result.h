@@ -19,9 +19,11 @@ namespace Reference_constrained_optimization {
 enum class Status {
   converged,       ///< no patch moves any more, or the energy falls by less than the tolerance.
   iteration_limit, ///< `number_of_iterations` outer iterations were made.
-  time_limit,      ///< `maximum_running_time` ran out; the mesh holds the last accepted state.
-  interrupted,     ///< the visitor said stop; the mesh holds the last accepted state.
-  nothing_to_do    ///< no vertex is free to move; only vertices off the reference were projected.
+  /// `maximum_running_time` ran out; the mesh holds the last accepted state. It is untouched if that was
+  /// during setup: energies and counts of defects are then 0.
+  time_limit,
+  interrupted,  ///< the visitor said stop; otherwise the same.
+  nothing_to_do ///< no vertex is free to move; only vertices off the reference were projected.
 };
 
 /*!

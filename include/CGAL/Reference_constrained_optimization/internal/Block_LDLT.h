@@ -5,6 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_BLOCK_LDLT_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_BLOCK_LDLT_H
 
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
+
 #include <Eigen/Core>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -83,13 +85,15 @@ public:
     return sum;
   }
 
-  // factorizes the matrix plus `shift` times the identity; false if that is not positive definite
-  bool factorize(double shift)
+  // factorizes the matrix plus `shift` times the identity; false if that is not positive definite. If it
+  // is given up, the next call begins anew.
+  bool factorize(double shift, Interruption* interruption = nullptr)
   {
     std::fill(m_row.begin(), m_row.end(), Block()); // a failure leaves it half done
     std::copy(m_column_begin.begin(), m_column_begin.end() - 1, m_column_end.begin());
     for(int k = 0; k < m_size; ++k)
     {
+      check_now_and_then(interruption, k);
       for(int p = m_value_begin[k]; p < m_value_begin[k + 1]; ++p)
         m_row[m_value_row[p]] = m_values[p];
       const Block& diagonal = m_diagonal[k];

@@ -29,8 +29,11 @@ public:
     bool is_in_quad; // its face has more corners than it
   };
 
+  // of the faces that are marked; of all if there are no marks
   template <typename Energy>
-  Element_set(const Energy& energy, const Energy_context& context)
+  Element_set(const Energy& energy,
+              const Energy_context& context,
+              const std::vector<char>& is_in_range = std::vector<char>())
   {
     const std::size_t n = context.number_of_faces();
     m_begin.reserve(n + 1);
@@ -39,6 +42,11 @@ public:
     for(std::size_t f = 0; f < n; ++f)
     {
       elements.clear();
+      if(!is_in_range.empty() && !is_in_range[f])
+      {
+        m_begin.push_back(int(m_elements.size()));
+        continue;
+      }
       energy.append_elements(context, f, elements);
       for(const Energy_element& e : elements)
       {
@@ -60,7 +68,7 @@ public:
       }
       m_begin.push_back(int(m_elements.size()));
     }
-    if(m_elements.empty())
+    if(m_elements.empty() && is_in_range.empty())
       throw Invalid_input("energy: the mesh has no element");
   }
 

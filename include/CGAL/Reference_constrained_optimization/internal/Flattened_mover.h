@@ -43,9 +43,14 @@ public:
     bool check_overlap = true;
   };
 
-  Flattened_mover(const Reference_surface& reference, const Parameters& parameters)
+  Flattened_mover(const Reference_surface& reference,
+                  const Parameters& parameters,
+                  Interruption* interruption = nullptr)
     : m_reference(reference),
-      m_parameters(parameters)
+      m_parameters(parameters),
+      m_interruption(interruption),
+      m_flattener(interruption),
+      m_optimizer(interruption)
   {}
 
   template <typename Density>
@@ -65,6 +70,7 @@ public:
     if(!is_flat)
       return false;
 
+    check(m_interruption);
     const auto start_of_descent = std::chrono::steady_clock::now();
     m_problem.carriers = drift_carriers(patch);
     m_start_triangle.assign(m_flattening.positions.size(), -1);
@@ -218,6 +224,7 @@ private:
 
   const Reference_surface& m_reference;
   Parameters m_parameters;
+  Interruption* m_interruption;
   Patch_flattener m_flattener;
   Projected_newton m_optimizer;
   Planar_problem m_problem;

@@ -47,12 +47,14 @@ public:
 
   // Solves for the right-hand side; the diagonal is shifted by a tiny part of its mean, which
   // decides directions that no element resists. False if the factorization failed.
-  bool solve(const Eigen::VectorXd& right, Eigen::VectorXd& solution)
+  bool solve(const Eigen::VectorXd& right,
+             Eigen::VectorXd& solution,
+             Interruption* interruption = nullptr)
   {
     const double mean = m_matrix.trace() / (2 * m_matrix.size());
     for(const double part : {1e-9, 1e-5, 1e-2})
     {
-      if(!m_matrix.factorize(part * mean))
+      if(!m_matrix.factorize(part * mean, interruption))
         continue;
       m_matrix.solve(right, solution);
       if(solution.allFinite() && right.dot(solution) > 0)

@@ -70,9 +70,13 @@ inline double adapted_resistance(double resistance, double taken)
 class On_surface_mover
 {
 public:
-  On_surface_mover(const Reference_surface& reference, int newton_steps)
+  On_surface_mover(const Reference_surface& reference,
+                   int newton_steps,
+                   Interruption* interruption = nullptr)
     : m_reference(reference),
-      m_newton_steps(newton_steps)
+      m_newton_steps(newton_steps),
+      m_interruption(interruption),
+      m_newton(interruption)
   {}
 
   // of the first step of the patches to come; see Projected_newton
@@ -92,7 +96,9 @@ public:
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
     m_problem.carriers = drift_carriers(patch);
+    check(m_interruption);
     m_newton.analyze(m_problem);
+    check(m_interruption);
     m_strain_resistance = m_first_resistance;
     m_is_held.assign(patch.vertices.size(), !patch.samples.empty());
     const bool proposes = step(patch, density);
@@ -237,6 +243,7 @@ private:
 
   const Reference_surface& m_reference;
   int m_newton_steps;
+  Interruption* m_interruption;
   double m_first_resistance = largest_resistance, m_strain_resistance = largest_resistance;
   Projected_newton m_newton;
   Tangent_problem m_problem;

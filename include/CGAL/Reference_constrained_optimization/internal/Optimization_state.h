@@ -64,6 +64,9 @@ struct Optimization_state
   Slide_lines lines = {};
   // per vertex that slides: its two neighbours on its line in the mesh; else -1
   std::vector<std::array<int, 2>> line_neighbours = {};
+  std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
+
+  bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 };
 
 // Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and

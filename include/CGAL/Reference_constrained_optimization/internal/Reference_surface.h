@@ -11,6 +11,7 @@
 
 #include <CGAL/Simple_cartesian.h>
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,8 @@ public:
     m_diagonal = bounding_box_diagonal(m_points);
     m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
     m_area = surface_area(m_mesh, m_points);
+    if(!std::isfinite(m_area) || !std::isfinite(m_diagonal))
+      throw Invalid_input("reference: the coordinates are so large that areas are not finite");
     if(!(m_area > 0))
       throw Invalid_input("reference: every face has zero area");
   }
@@ -113,11 +116,13 @@ public:
     return 0.5 * (m_points[m_mesh.source(c)] + m_points[m_mesh.target(c)]);
   }
 
-  // turns all normals round
-  void reverse()
+  // turns the normals of whole components round, given by their faces
+  void reverse(const std::vector<char>& is_reversed)
   {
-    for(Vector_3& n : m_normals)
-      n = -n;
+    for(int v = 0; v < m_mesh.number_of_vertices(); ++v)
+      if(m_mesh.vertex_begin[v] < m_mesh.vertex_begin[v + 1] &&
+         is_reversed[m_mesh.corner_face[m_mesh.vertex_corners[m_mesh.vertex_begin[v]]]])
+        m_normals[v] = -m_normals[v];
   }
 
   Surface_point closest_in_face(const Vector_3& p, int f) const

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SEARCH_MOVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SEARCH_MOVER_H
 
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/seconds_since.h>
 #include <CGAL/Reference_constrained_optimization/internal/tangent_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/tangent_step.h>
@@ -28,7 +29,10 @@ namespace internal {
 class Search_mover
 {
 public:
-  explicit Search_mover(const Reference_surface& reference) : m_reference(reference) {}
+  explicit Search_mover(const Reference_surface& reference, Interruption* interruption = nullptr)
+    : m_reference(reference),
+      m_interruption(interruption)
+  {}
 
   // elements with a density or with a cosine of an angle above these are what the search is for
   void set_target(double bad, double sharp)
@@ -195,6 +199,7 @@ private:
         if(m_reach[i] < last_reach)
           continue;
         goes_on = true;
+        check_now_and_then(m_interruption, int(i));
         double edge = 0;
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
           edge +=
@@ -271,6 +276,7 @@ private:
   }
 
   const Reference_surface& m_reference;
+  Interruption* m_interruption;
   double m_bad = std::numeric_limits<double>::infinity();
   double m_sharp = 1;
   std::vector<Placed_vertex> m_placed;

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
 #include <algorithm>
@@ -37,6 +38,8 @@ struct Patch_measure
 class Acceptance_test
 {
 public:
+  explicit Acceptance_test(Interruption* interruption = nullptr) : m_interruption(interruption) {}
+
   // bounds on single elements and on single vertices of R, and what else changes between iterations
   struct Limits
   {
@@ -90,9 +93,11 @@ public:
     const int maximum_attempts = 20, local_attempts = 16;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
     {
+      check(m_interruption);
       place(patch, mover);
       measure(patch, density, m_candidate, m_after);
       decision.after = sum_up(patch, m_after);
+      check(m_interruption);
       visit_samples(patch, state.reference);
       visit_guests(patch, state.reference);
       decision.after.drift_energy = drift_energy(patch);
@@ -430,6 +435,7 @@ private:
     m_offenders.clear();
   }
 
+  Interruption* m_interruption;
   Limits m_limits;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 
 #include <algorithm>
@@ -37,11 +38,12 @@ public:
   void initialize(const Optimization_state& state,
                   double bound,
                   bool at_least,
-                  const Drift_barrier& barrier)
+                  const Drift_barrier& barrier,
+                  Interruption* interruption = nullptr)
   {
     m_barrier = barrier;
-    welcome_guests<ConcurrencyTag>(state);
-    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state);
+    welcome_guests<ConcurrencyTag>(state, interruption);
+    const std::vector<double> distances = measure_samples<ConcurrencyTag>(state, interruption);
     const double guests = *std::max_element(m_distance.begin(), m_distance.end());
     const double samples = *std::max_element(distances.begin(), distances.end());
     m_initial_drift = (std::max)(guests, samples);
@@ -90,13 +92,13 @@ public:
         if(s != 4 * t + i)
           continue;
         Patch::Sample& sample = patch.samples[s];
-        if(!patch.is_split)
+        if(!m_known.empty())
         {
           const Known& known = m_known[known_sample(state.mesh, patch, s)];
           sample.face = known.face;
           sample.distance = known.distance;
         }
-        if(patch.is_split || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
+        if(m_known.empty() || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
           locate_sample(patch, state.reference, vertex, s, sample);
       }
 
@@ -122,7 +124,7 @@ public:
   Known_samples samples_of(const Indexed_mesh& mesh, const Patch& patch) const
   {
     Known_samples result;
-    if(!is_on() || patch.is_split)
+    if(!is_on() || m_known.empty())
       return result;
     for(int s = 0; s < int(patch.samples.size()); ++s)
       if(sample_of(patch, s / 4, s % 4) == s)
@@ -209,7 +211,7 @@ private:
   }
 
   template <typename ConcurrencyTag>
-  void welcome_guests(const Optimization_state& state)
+  void welcome_guests(const Optimization_state& state, Interruption* interruption)
   {
     const Indexed_mesh& mesh = state.mesh;
     const Indexed_mesh& reference = state.reference.mesh();
@@ -240,19 +242,25 @@ private:
       }
       all_are_known = all_are_known && (face[r] >= 0 || !is_used(r));
     }
+    check(interruption);
     if(!all_are_known)
     {
       copy.mesh = mesh;
       const Reference_surface surface(copy);
+      check(interruption);
       for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
         for(int r = begin; r < end; ++r)
+        {
+          check_now_and_then(interruption, r);
           if(face[r] < 0 && is_used(r))
           {
             const Vector_3 p = state.reference.witness(r);
             const Surface_point foot = surface.closest(p);
             face[r] = surface.original_face(foot.face);
-            m_distance[r] = (foot.position - p).norm();
+            if(state.counts(face[r]))
+              m_distance[r] = (foot.position - p).norm();
           }
+        }
       });
     }
     for(int r = 0; r < n; ++r)
@@ -262,7 +270,8 @@ private:
 
   // the largest distance of the samples of each face
   template <typename ConcurrencyTag>
-  std::vector<double> measure_samples(const Optimization_state& state)
+  std::vector<double> measure_samples(const Optimization_state& state,
+                                      Interruption* interruption = nullptr)
   {
     const Indexed_mesh& mesh = state.mesh;
     const int n = mesh.number_of_faces();
@@ -273,7 +282,8 @@ private:
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
-        if(is_face_of_reference(state, f))
+        check_now_and_then(interruption, f);
+        if(!state.counts(f) || is_face_of_reference(state, f))
           continue;
         // as a fan: a quad is split this way or that
         const int first = mesh.face_begin[f];
@@ -321,7 +331,7 @@ private:
   double m_bound = 0, m_initial_drift = 0;
   std::vector<double> m_face_bounds;    // per face of the mesh; empty if all are the bound
   std::vector<double> m_witness_bounds; // per witness; empty if all are the bound
-  std::vector<Known> m_known; // four per face of a triangle mesh; no less than the true distance
+  std::vector<Known> m_known; // four per face if all are triangles; no less than the true distance
   // the guests of every face are a list: the first one, and the next one after each witness
   std::vector<int> m_first, m_next;
   std::vector<double> m_distance; // per witness

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FINISHING_STAGE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,8 +60,10 @@ public:
   // `energy(f)` is that of a face; their sum may rise, but not beyond `largest_energy`.
   Finishing_stage(const Optimization_state& state,
                   std::function<double(int)> energy,
-                  double largest_energy)
+                  double largest_energy,
+                  Interruption* interruption = nullptr)
     : m_state(state),
+      m_interruption(interruption),
       m_face_energy(std::move(energy)),
       m_largest_energy(largest_energy)
   {}
@@ -182,11 +185,15 @@ private:
     m_low.clear();
     int rings = 0;
     for(std::size_t f = 0; f < m_angles.size(); ++f)
+    {
+      check_now_and_then(m_interruption, int(f));
       if(m_angles[f] < angle && can_rise(int(f)))
       {
         m_low.push_back(int(f));
         rings = (std::max)(rings, int(m_rings[f]));
       }
+    }
+    check(m_interruption);
     for(; rings > 0; --rings)
     {
       for(const int f : m_low)
@@ -244,7 +251,7 @@ private:
   }
 
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
-  double mean() const { return m_sum / double(m_angles.size()); }
+  double mean() const { return m_sum / m_number_of_faces; }
 
   // of a face
   double smallest_angle(int f) const
@@ -264,11 +271,14 @@ private:
     m_rings.assign(n, 1);
     m_is_visited.assign(n, 0);
     std::vector<double> angles(n);
+    m_number_of_faces = 0;
+    for(int f = 0; f < n; ++f)
+      m_number_of_faces += m_state.counts(f);
     m_energies.resize(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
-        angles[f] = smallest_angle(f);
+        angles[f] = m_state.counts(f) ? smallest_angle(f) : 0;
         m_energies[f] = m_face_energy(f);
         bool may_change = false;
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -307,11 +317,13 @@ private:
   }
 
   const Optimization_state& m_state;
+  Interruption* m_interruption;
   const std::function<double(int)> m_face_energy;
   const double m_largest_energy;
   std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move
   std::vector<unsigned char> m_rings; // per face: what surroundings it needs
   std::vector<double> m_energies;     // per face
+  double m_number_of_faces = 0;       // that are to be optimized
   double m_energy = 0;                // of all
   double m_minimum = 0;               // of all faces that may change
   double m_sum = 0;                   // of all

@@ -7,7 +7,10 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
+#include <CGAL/Reference_constrained_optimization/internal/text_of.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/iterator.h>
@@ -80,12 +83,13 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
 }
 
 // Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free vertices onto it. A reference
-// that is oriented the other way is turned round.
+// that is oriented the other way is turned round, each component of it by itself.
 template <typename ConcurrencyTag = CGAL::Sequential_tag>
 void place_on_reference(const std::vector<Vector_3>& points,
                         Reference_surface& reference,
                         Optimization_state& state,
-                        Result& result)
+                        Result& result,
+                        Interruption* interruption = nullptr)
 {
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
@@ -99,15 +103,25 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const Point_index index(reference.points(), [&](int v) {
     return surface.vertex_begin[v] < surface.vertex_begin[v + 1];
   });
+  // what is not optimized may be where it likes
+  const auto is_needed = [&](int v) {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      if(state.counts(mesh.corner_face[mesh.vertex_corners[k]]))
+        return true;
+    return false;
+  };
   state.vertices.resize(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
     for(int v = begin; v < end; ++v)
+    {
+      check_now_and_then(interruption, v);
       if(mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
       {
         const int twin = index.find(points[v]);
         state.vertices[v].on_reference =
           twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
       }
+    }
   });
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {
@@ -116,11 +130,12 @@ void place_on_reference(const std::vector<Vector_3>& points,
     if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
       continue;
     const double distance = (placed.on_reference.position - points[v]).norm();
-    if(distance > limit)
-      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + std::to_string(distance) +
-                          " away from the reference, more than a tenth of its diagonal (" +
-                          std::to_string(reference.diagonal()) + ")");
-    result.largest_initial_distance = (std::max)(result.largest_initial_distance, distance);
+    if(distance > limit && is_needed(v))
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + text_of(distance) +
+                          " away from the reference, but at most " + text_of(limit) +
+                          ", a tenth of the reference's diagonal, is allowed");
+    if(distance > result.largest_initial_distance && is_needed(v))
+      result.largest_initial_distance = distance;
     if(state.is_free[v])
     {
       ++result.number_of_free_vertices;
@@ -136,18 +151,38 @@ void place_on_reference(const std::vector<Vector_3>& points,
   };
   orient();
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-  double agreement = 0;
+  std::vector<double> agreement(surface.number_of_faces(), 0); // per face of R
+  bool disagrees = false;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
+    if(!state.counts(f))
+      continue;
     const Vector_3 n = face_normal(mesh, vertex, f);
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      agreement += n.dot(vertex(mesh.corner_vertex[c]).normal);
+    {
+      const Placed_vertex& v = vertex(mesh.corner_vertex[c]);
+      const double d = n.dot(v.normal);
+      agreement[v.on_reference.face] += d;
+      disagrees = disagrees || d < 0;
+    }
   }
-  if(agreement < 0)
+  if(!disagrees)
+    return;
+  std::vector<char> is_left(surface.number_of_faces(), 1), is_reversed(is_left.size(), 0);
+  for(int first = 0; first < surface.number_of_faces(); ++first)
   {
-    reference.reverse();
-    orient();
+    if(!is_left[first])
+      continue;
+    const std::vector<int> component = take_connected_region(surface, first, is_left);
+    double sum = 0;
+    for(const int f : component)
+      sum += agreement[f];
+    if(sum < 0)
+      for(const int f : component)
+        is_reversed[f] = 1;
   }
+  reference.reverse(is_reversed);
+  orient();
 }
 
 } // namespace internal

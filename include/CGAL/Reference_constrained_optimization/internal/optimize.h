@@ -7,7 +7,9 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/sliding_vertices.h>
@@ -16,9 +18,11 @@
 
 #include <CGAL/boost/graph/named_params_helper.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
@@ -45,47 +49,55 @@ bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
     return false;
 }
 
-// What `CGAL::reference_constrained_optimize()` does once its numbers are read: `loop_parameters`
-// also has switches that the public function does not offer. Of the named parameters the maps and
-// the visitor are used.
+// What `optimize()` does; throws Interrupted if it is cut short before the mesh is on the reference, and
+// leaves the mesh as it is then.
 template <typename ConcurrencyTag,
           typename PolygonMesh,
           typename ReferenceMesh,
           typename Energy,
+          typename FaceRange,
+          typename Visitor,
           typename NamedParameters,
           typename NamedParametersReference>
-Result optimize(PolygonMesh& mesh,
-                const ReferenceMesh& reference,
-                const Energy& energy,
-                const Loop_parameters& loop_parameters,
-                const NamedParameters& np,
-                const NamedParametersReference& np_reference)
+void optimize(const FaceRange& range,
+              PolygonMesh& mesh,
+              const ReferenceMesh& reference,
+              const Energy& energy,
+              const Loop_parameters& loop_parameters,
+              Visitor& visitor,
+              Interruption& interruption,
+              const NamedParameters& np,
+              const NamedParametersReference& np_reference,
+              Result& result)
 {
   const auto start = std::chrono::steady_clock::now();
-  const auto& own_np = cgal_parameters(np);
-  const auto& own_np_reference = cgal_parameters(np_reference);
-
   auto vpm =
-    parameters::choose_parameter(parameters::get_parameter(own_np, CGAL::internal_np::vertex_point),
+    parameters::choose_parameter(parameters::get_parameter(np, CGAL::internal_np::vertex_point),
                                  CGAL::get_property_map(CGAL::vertex_point, mesh));
   auto reference_vpm = parameters::choose_parameter(
-    parameters::get_parameter(own_np_reference, CGAL::internal_np::vertex_point),
+    parameters::get_parameter(np_reference, CGAL::internal_np::vertex_point),
     CGAL::get_const_property_map(CGAL::vertex_point, reference));
 
+  interruption.check();
   const Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
+  interruption.check();
   Reference_surface surface(
-    is_own_reference(mesh, reference, own_np, own_np_reference)
+    is_own_reference(mesh, reference, np, np_reference)
       ? copy
       : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference"));
+  check_location_map(surface, np);
+  interruption.check();
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
                                surface_area(copy.mesh, copy.points), surface.area());
-  const Element_set elements(energy, context);
-  Result result;
-  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
-  const Constraints constraints = read_constraints(mesh, own_np, copy.mesh);
+  const std::vector<char> is_in_range = mark_faces(mesh, range);
+  const Element_set elements(energy, context, is_in_range);
+  interruption.check();
+  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}, is_in_range};
+  Constraints constraints = read_constraints(mesh, np, copy.mesh);
+  constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
-  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result);
+  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption);
   if(loop_parameters.relax_constraints)
     Sliding_vertices(state, constraints, result);
   result.times.setup = seconds_since(start);
@@ -94,29 +106,25 @@ Result optimize(PolygonMesh& mesh,
   typedef typename std::decay<decltype(density)>::type Density;
   const double infinity = std::numeric_limits<double>::infinity();
   const Global_measure initial = measure<ConcurrencyTag>(state, density, infinity);
-  result.initial_energy = initial.energy / elements.size();
+  const double number_of_elements = (std::max)(1, elements.size());
+  result.initial_energy = initial.energy / number_of_elements;
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
 
   const auto finish = [&]() {
     write_points(mesh, vpm, copy.points, state);
-    write_locations(mesh, reference, own_np, state);
+    write_locations(mesh, reference, np, state);
     const Global_measure final = measure<ConcurrencyTag>(state, density, infinity);
-    result.final_energy = final.energy / elements.size();
+    result.final_energy = final.energy / number_of_elements;
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
-    result.running_time = seconds_since(start);
   };
-  auto visitor_parameter = parameters::choose_parameter(
-    parameters::get_parameter(own_np, CGAL::internal_np::visitor), Default_visitor());
-  auto& visitor = unwrap(visitor_parameter);
-  typedef typename std::decay<decltype(visitor)>::type Visitor;
   if(result.number_of_free_vertices > 0)
   {
     Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, loop_parameters, visitor,
-                                                      result, start);
+                                                      result, interruption);
     try
     {
       loop.run();
@@ -128,6 +136,43 @@ Result optimize(PolygonMesh& mesh,
     }
   }
   finish();
+}
+
+// What `CGAL::reference_constrained_optimize()` does once its numbers are read: `loop_parameters`
+// also has switches that the public function does not offer. Of the named parameters the maps and
+// the visitor are used.
+template <typename ConcurrencyTag,
+          typename PolygonMesh,
+          typename ReferenceMesh,
+          typename Energy,
+          typename NamedParameters,
+          typename NamedParametersReference,
+          typename FaceRange = All_faces>
+Result optimize(PolygonMesh& mesh,
+                const ReferenceMesh& reference,
+                const Energy& energy,
+                const Loop_parameters& loop_parameters,
+                const NamedParameters& np,
+                const NamedParametersReference& np_reference,
+                const FaceRange& range = FaceRange())
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto& own_np = cgal_parameters(np);
+  auto visitor_parameter = parameters::choose_parameter(
+    parameters::get_parameter(own_np, CGAL::internal_np::visitor), Default_visitor());
+  auto& visitor = unwrap(visitor_parameter);
+  Interruption interruption(visitor, start, loop_parameters.maximum_running_time);
+  Result result;
+  try
+  {
+    optimize<ConcurrencyTag>(range, mesh, reference, energy, loop_parameters, visitor, interruption,
+                             own_np, cgal_parameters(np_reference), result);
+  }
+  catch(const Interrupted&)
+  {
+    result.status = interruption.status();
+  }
+  result.running_time = seconds_since(start);
   return result;
 }
 

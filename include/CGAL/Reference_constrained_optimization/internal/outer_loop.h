@@ -9,20 +9,20 @@
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
-#include <CGAL/Reference_constrained_optimization/internal/commit.h>
+#include <CGAL/Reference_constrained_optimization/internal/commit_round.h>
 #include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
+#include <CGAL/Reference_constrained_optimization/internal/saved_state.h>
 
 #include <CGAL/Random.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -44,13 +44,13 @@ public:
              const Loop_parameters& parameters,
              Visitor& visitor,
              Result& result,
-             const std::chrono::steady_clock::time_point& start)
+             Interruption& interruption)
     : m_state(state),
       m_density(density),
       m_parameters(parameters),
       m_visitor(visitor),
       m_result(result),
-      m_start(start),
+      m_interruption(interruption),
       m_random(parameters.random_seed),
       m_selection(state.mesh, sized(parameters, state.mesh)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
@@ -61,15 +61,43 @@ public:
                         small_patch_size(parameters.selection, state.mesh),
                         largest_patch_size(parameters.selection)),
       m_rounds(state.mesh, parameters.halo),
-      m_for_each([&state, &parameters]() { return Patch_solver(state, parameters); })
+      m_for_each([&state, &parameters, &interruption]() {
+        return Patch_solver(state, parameters, &interruption);
+      })
   {}
 
-  // the state holds what was accepted, also when a visitor throws
+  // the state holds what was accepted, also when it is cut short or a visitor throws
   void run()
+  {
+    try
+    {
+      optimize();
+    }
+    catch(const Interrupted&)
+    {}
+    catch(...)
+    {
+      note_end();
+      throw;
+    }
+    note_end();
+  }
+
+private:
+  void note_end()
+  {
+    if(m_interruption.has_stopped())
+      m_result.status = m_interruption.status();
+    if(m_drift_guard.is_on())
+      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
+  }
+
+  void optimize()
   {
     const Indexed_mesh& mesh = m_state.mesh;
     Global_measure before =
       measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
+    m_interruption.check();
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
     const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
@@ -86,21 +114,22 @@ public:
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
+    m_interruption.check();
     initialize_drift_guard();
+    m_interruption.check();
     m_geometry.update(mesh, points);
+    m_interruption.check();
     m_edge_length = vertex_edge_lengths(mesh, points);
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
+    m_interruption.check();
     m_result.status = Status::iteration_limit;
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(iterate_to_convergence(before) && revisits && revisit_worst() && finishes_angles())
       finish_angles();
-    if(m_drift_guard.is_on())
-      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
   }
 
-private:
   // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
   // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
   // Flattened patches alone see the barrier only where it is felt already, and stall in front of it: for
@@ -113,12 +142,30 @@ private:
       return;
     const Indexed_mesh& mesh = m_state.mesh;
     const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
-    const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
+    double triangles = 0;
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+      triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
     const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
-    m_drift_guard.initialize<ConcurrencyTag>(
-      m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest), bound < 0, barrier);
+    Drift_guard guard; // of no use if that is cut short
+    guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
+                                     bound < 0, barrier, &m_interruption);
+    m_drift_guard = std::move(guard);
     m_result.drift_bound = m_drift_guard.bound();
     m_result.initial_drift = m_drift_guard.initial_drift();
+  }
+
+  // calls a visit; false if that was cut short
+  template <typename Visit>
+  static bool completes(const Visit& visit)
+  {
+    try
+    {
+      return visit();
+    }
+    catch(const Interrupted&)
+    {
+      return false;
+    }
   }
 
   // false if cut short
@@ -132,7 +179,7 @@ private:
       m_has_refused = false;
       m_taken = m_could_move = 0;
       ++m_result.number_of_iterations;
-      const bool complete = visit_active();
+      const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
       m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
       if(!complete)
@@ -198,7 +245,7 @@ private:
           is_wanted = faces_to_flatten();
       },
       [&]() { patches = divide(m_is_active, m_partition); });
-    return (!flattens || visit(is_wanted, m_selection)) && may_go_on() &&
+    return (!flattens || visit(is_wanted, m_selection)) && !m_interruption.stops() &&
            solve_round(patches, Moves::on_surface, m_density);
   }
 
@@ -210,10 +257,12 @@ private:
     // mesh what was one triangle is many
     const int smallest_region = m_prizes_angles ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
+    m_interruption.check();
     const std::vector<char> is_bad =
       bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
+    m_interruption.check();
     is_wanted = faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_wanted), 2);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] && m_is_active[f];
@@ -240,6 +289,7 @@ private:
     double before = std::numeric_limits<double>::infinity();
     for(int pass = 0; pass < maximum_passes; ++pass)
     {
+      m_interruption.check();
       const std::vector<std::pair<double, int>> worst =
         worst_faces<ConcurrencyTag>(m_state, m_density, m_limits.bad);
       if(worst.empty())
@@ -302,19 +352,9 @@ private:
   {
     const Acceptance_test::Limits limits = m_limits;
     m_is_finishing = true;
+    m_interruption.check();
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    Drift_guard::Snapshot snapshot;
-    std::vector<std::pair<int, Placed_vertex>> saved; // vertices, before they were in a patch
-    std::vector<char> is_saved(m_state.vertices.size(), 0);
-    std::vector<char> face_is_saved(m_state.mesh.number_of_faces(), 0);
-    const auto forget = [&]() {
-      for(const std::pair<int, Placed_vertex>& v : saved)
-        is_saved[v.first] = 0;
-      saved.clear();
-      for(const int f : snapshot.faces)
-        face_is_saved[f] = 0;
-      snapshot = Drift_guard::Snapshot();
-    };
+    Saved_state saved(m_state, m_drift_guard);
     using Stage = Finishing_stage<ConcurrencyTag>;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
     const auto energy = [&](int f) {
@@ -323,35 +363,24 @@ private:
         sum += element_energy(m_density, m_state.elements[e], vertex);
       return sum;
     };
-    Stage(m_state, energy, m_initial_energy)
-      .run(
+    Stage stage(m_state, energy, m_initial_energy, &m_interruption);
+    try
+    {
+      stage.run(
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
-          const Indexed_mesh& mesh = m_state.mesh;
-          for(const int f : faces.list)
-          {
-            if(!face_is_saved[f])
-              m_drift_guard.save(mesh, f, snapshot);
-            face_is_saved[f] = 1;
-            for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-            {
-              const int v = mesh.corner_vertex[c];
-              if(!is_saved[v])
-                saved.emplace_back(v, m_state.vertices[v]);
-              is_saved[v] = 1;
-            }
-          }
+          saved.add(faces.list);
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
           return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
                                Angle_barrier_density<Density>(m_density, goal.target));
         },
-        forget,
-        [&]() {
-          for(const std::pair<int, Placed_vertex>& v : saved)
-            m_state.vertices[v.first] = v.second;
-          m_drift_guard.restore(snapshot);
-          forget();
-        });
+        [&]() { saved.forget(); }, [&]() { saved.restore(); });
+    }
+    catch(...)
+    {
+      saved.restore();
+      throw;
+    }
     m_limits = limits;
     m_is_finishing = false;
   }
@@ -372,11 +401,11 @@ private:
 
     while(true)
     {
-      if(!may_go_on())
+      if(m_interruption.stops())
         return false;
       const auto start = std::chrono::steady_clock::now();
       const std::vector<std::vector<int>> patches =
-        m_rounds.select(seeds, m_is_untouched, selection, m_geometry);
+        m_rounds.select(seeds, m_is_untouched, selection, m_geometry, &m_interruption);
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
@@ -389,7 +418,7 @@ private:
                                        Patch_partition& partition)
   {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random);
+    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random, &m_interruption);
     m_result.times.selection += seconds_since(start);
     return patches;
   }
@@ -399,26 +428,13 @@ private:
   template <typename AnyDensity>
   bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensity& density)
   {
-    if(!may_go_on())
+    if(m_interruption.stops())
       return false;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<int>> patches =
       m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
     return solve_round(patches, moves, density);
-  }
-
-  bool has_time() const { return seconds_since(m_start) <= m_parameters.maximum_running_time; }
-
-  bool may_go_on()
-  {
-    if(!has_time())
-      m_result.status = Status::time_limit;
-    else if(!m_visitor.go_further())
-      m_result.status = Status::interrupted;
-    else
-      return true;
-    return false;
   }
 
   // false if it was cut short; what was solved by then is committed
@@ -429,54 +445,26 @@ private:
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
     std::vector<Solved_patch> solved(patches.size());
-    const bool is_sequential = std::is_same<ConcurrencyTag, CGAL::Sequential_tag>::value;
-    std::atomic<bool> stops(false);
-    m_for_each(patches.size(), [&](Patch_solver& solver, std::size_t i) {
-      // only the calling thread may ask the visitor
-      if(!stops && !(is_sequential ? may_go_on() : has_time()))
-        stops = true;
-      if(!stops)
-        solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
-    });
-    commit(solved);
-    m_visitor.on_round_end();
-    if(stops && !is_sequential)
-      m_result.status = Status::time_limit;
-    return !stops;
-  }
-
-  // commits the patches of a round and reports them; those that were reported stay also when the
-  // visitor throws
-  void commit(std::vector<Solved_patch>& solved)
-  {
-    std::size_t number = 0;
-    const auto commit_insides = [&]() {
-      m_for_each(number, [&](Patch_solver&, std::size_t i) {
-        if(solved[i].decision.accepted)
+    m_for_each(
+      patches.size(),
+      [&](Patch_solver& solver, std::size_t i) {
+        if(m_interruption.stops())
+          return;
+        try
         {
-          commit_inside(m_state, solved[i]);
-          update(solved[i]);
+          solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
         }
-        solved[i].drop_vertices();
-      });
-    };
-    try
-    {
-      while(number < solved.size())
-      {
-        Solved_patch& s = solved[number++];
-        if(s.number_of_faces == 0)
-          continue;
-        commit_boundary(m_state, s);
-        report(s);
-      }
-    }
-    catch(...)
-    {
-      commit_insides();
-      throw;
-    }
-    commit_insides();
+        catch(const Interrupted&)
+        {
+          solved[i] = Solved_patch(); // as if it had not been begun
+        }
+      },
+      [&]() { m_interruption.stops(); });
+    commit_round(
+      m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
+      [&](const Solved_patch& s) { update(s); });
+    m_visitor.on_round_end();
+    return !m_interruption.has_stopped();
   }
 
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
@@ -538,7 +526,7 @@ private:
   Loop_parameters m_parameters;
   Visitor& m_visitor;
   Result& m_result;
-  std::chrono::steady_clock::time_point m_start;
+  Interruption& m_interruption;
   CGAL::Random m_random;
   Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;

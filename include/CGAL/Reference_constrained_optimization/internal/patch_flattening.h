@@ -70,6 +70,11 @@ class Patch_flattener
   typedef Surface_mesh::Property_map<Surface_mesh::Vertex_index, Kernel::Point_2> Uv_map;
 
 public:
+  explicit Patch_flattener(Interruption* interruption = nullptr)
+    : m_interruption(interruption),
+      m_optimizer(interruption)
+  {}
+
   Flattening flatten(const Indexed_mesh& triangles,
                      const std::vector<Vector_3>& points,
                      const Flattening_parameters& parameters = Flattening_parameters())
@@ -90,6 +95,7 @@ public:
          ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
          : m_conformal.flatten(triangles, m_shapes, ends(points), flattening.positions)) &&
       is_usable(triangles, flattening.positions);
+    check(m_interruption);
     if(is_conformal)
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
@@ -103,6 +109,7 @@ public:
        is_usable(triangles, flattening.positions));
     if(!is_usable_start)
       return flattening;
+    check(m_interruption);
     flattening.path = is_conformal && flattening.distortion < parameters.conformal_limit
                         ? Flattening_path::conformal
                         : Flattening_path::convex_border;
@@ -277,6 +284,7 @@ private:
     return Planar_problem::edges(u, {{v[0], v[1], v[2]}});
   }
 
+  Interruption* m_interruption;
   Conformal_flattening m_conformal;
   Surface_mesh m_mesh;
   std::vector<Eigen::Matrix2d> m_shapes;

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 
 #include <CGAL/Random.h>
 
@@ -68,7 +69,9 @@ public:
   }
 
   // patches of about the given number of faces, the largest first
-  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted, CGAL::Random& random)
+  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted,
+                                       CGAL::Random& random,
+                                       Interruption* interruption = nullptr)
   {
     std::vector<int> wanted;
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
@@ -79,9 +82,12 @@ public:
     for(std::size_t i = 0; i < number; ++i)
       std::swap(seeds[i], seeds[std::size_t(random.get_int(int(i), int(seeds.size())))]);
     seeds.resize(number);
+    check(interruption);
     int cells = grow(wanted, is_wanted, seeds);
+    check(interruption);
     if(number > 1) // sizes are more even around faces in the middle
       cells = grow(wanted, is_wanted, centers(wanted, cells));
+    check(interruption);
 
     std::vector<std::vector<int>> patches(cells);
     for(const int f : m_queue)

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_ROUNDS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_ROUNDS_H
 
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
 
 #include <utility>
@@ -27,7 +28,8 @@ public:
   std::vector<std::vector<int>> select(std::vector<int>& seeds,
                                        std::vector<char>& is_untouched,
                                        Patch_selection& selection,
-                                       const Face_geometry& geometry)
+                                       const Face_geometry& geometry,
+                                       Interruption* interruption = nullptr)
   {
     std::vector<std::vector<int>> patches;
     m_is_taken.assign(m_mesh.number_of_faces(), 0);
@@ -48,6 +50,7 @@ public:
         seeds[kept++] = seed;
         continue;
       }
+      check(interruption);
       std::vector<int> patch =
         selection.grow(seed, geometry, [&](int f) { return m_is_taken[f] != 0; });
       for(const int f : selection.touched(patch))

@@ -63,17 +63,22 @@ struct Solved_patch
 class Patch_solver
 {
 public:
-  Patch_solver(const Optimization_state& state, const Loop_parameters& parameters)
-    : m_builder(state.mesh),
-      m_flattened_mover(state.reference, parameters.mover),
-      m_on_surface_mover(state.reference, parameters.on_surface_newton_steps),
-      m_search_mover(state.reference),
+  Patch_solver(const Optimization_state& state,
+               const Loop_parameters& parameters,
+               Interruption* interruption)
+    : m_interruption(interruption),
+      m_builder(state.mesh),
+      m_flattened_mover(state.reference, parameters.mover, interruption),
+      m_on_surface_mover(state.reference, parameters.on_surface_newton_steps, interruption),
+      m_search_mover(state.reference, interruption),
+      m_acceptance(interruption),
       m_flattened_proposals(parameters.proposals_per_patch),
       m_on_surface_proposals(parameters.on_surface_proposals),
       m_tolerance(parameters.energy_tolerance)
   {}
 
-  // reads the state, does not write it
+  // Reads the state, does not write it. Throws Interrupted if it is to end; what became of the patch
+  // then is of no use.
   template <typename Density>
   void solve(const std::vector<int>& faces,
              const Optimization_state& state,
@@ -92,7 +97,9 @@ public:
       return;
     }
     s.was_tried = true;
+    check(m_interruption);
     drift_guard.invite(state, s.patch);
+    check(m_interruption);
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
@@ -194,6 +201,7 @@ private:
     return sum / patch.number_of_free_vertices;
   }
 
+  Interruption* m_interruption;
   Patch_builder m_builder;
   Flattened_mover m_flattened_mover;
   On_surface_mover m_on_surface_mover;

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Newton_system.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_terms.h>
 #include <CGAL/Reference_constrained_optimization/internal/flip_free_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_derivatives.h>
 
 #include <Eigen/Core>
@@ -35,6 +36,9 @@ namespace internal {
 class Projected_newton
 {
 public:
+  // may be given up between its steps, and within
+  explicit Projected_newton(Interruption* interruption = nullptr) : m_interruption(interruption) {}
+
   struct Outcome
   {
     int steps = 0;
@@ -82,13 +86,16 @@ public:
     if(m_size == 0)
       return outcome;
 
+    check(m_interruption);
     double energy = assemble(problem, density, u);
     outcome.initial_energy = outcome.final_energy = energy;
     std::vector<Vector_2> moved(u);
     for(int step = 0; step < maximum_steps; ++step)
     {
-      if(!m_system.solve(m_right, m_direction))
+      check(m_interruption);
+      if(!m_system.solve(m_right, m_direction, m_interruption))
         break;
+      check(m_interruption);
       damp(problem, u);
       const double decrease = m_right.dot(m_direction);
       if(!(decrease > tolerance * m_scale))
@@ -102,6 +109,7 @@ public:
         for(std::size_t i = 0; i < u.size(); ++i)
           if(m_variable[i] >= 0)
             moved[i] = u[i] + t * m_direction.segment<2>(2 * m_variable[i]);
+        check(m_interruption);
         trial = value(problem, density, moved);
         found = trial <= energy - 1e-4 * t * decrease;
         if(!found)
@@ -115,6 +123,7 @@ public:
       ++outcome.steps;
       if(step + 1 == maximum_steps || gained < tolerance * m_scale)
         break;
+      check(m_interruption);
       assemble(problem, density, u);
     }
     return outcome;
@@ -289,6 +298,7 @@ private:
     }
   }
 
+  Interruption* m_interruption;
   int m_size = 0;
   int m_first_carrier = 0;                   // number of the first carrier among the triples
   std::vector<std::array<int, 3>> m_triples; // of the system

@@ -7,9 +7,11 @@
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/text_of.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
@@ -32,8 +34,20 @@ T& unwrap(std::reference_wrapper<T>& t)
 inline double checked_positive(double value, const char* name)
 {
   if(!(value > 0))
-    throw Invalid_input(std::string(name) + " must be positive, but is " + std::to_string(value));
+    throw Invalid_input(std::string(name) + " must be positive, but is " + text_of(value));
   return value;
+}
+
+// a whole number that is not negative and fits into Integer
+template <typename Integer>
+Integer checked_count(double value, const char* name)
+{
+  // the largest may not have an equal of its own: it is not reached
+  const double end = std::ldexp(1., std::numeric_limits<Integer>::digits);
+  if(!(value >= 0) || !(value < end) || value != std::floor(value))
+    throw Invalid_input(std::string(name) +
+                        " must be a whole number that is not negative, but is " + text_of(value));
+  return Integer(value);
 }
 
 // The numbers among the named parameters, checked.
@@ -43,8 +57,10 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
   using parameters::choose_parameter;
   using parameters::get_parameter;
   Loop_parameters p;
-  p.number_of_iterations = choose_parameter(
-    get_parameter(np, CGAL::internal_np::number_of_iterations), p.number_of_iterations);
+  p.number_of_iterations = checked_count<std::size_t>(
+    double(choose_parameter(get_parameter(np, CGAL::internal_np::number_of_iterations),
+                            p.number_of_iterations)),
+    "number_of_iterations");
   p.random_seed =
     choose_parameter(get_parameter(np, CGAL::internal_np::random_seed), p.random_seed);
   p.maximum_running_time =
@@ -56,14 +72,13 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
   {
     p.drift_bound = get_parameter(np, internal_np::drift_bound);
     if(!(p.drift_bound >= 0))
-      throw Invalid_input("drift_bound must not be negative, but is " +
-                          std::to_string(p.drift_bound));
+      throw Invalid_input("drift_bound must not be negative, but is " + text_of(p.drift_bound));
   }
   p.energy_tolerance =
     choose_parameter(get_parameter(np, internal_np::energy_tolerance), p.energy_tolerance);
   if(!(p.energy_tolerance >= 0))
     throw Invalid_input("energy_tolerance must not be negative, but is " +
-                        std::to_string(p.energy_tolerance));
+                        text_of(p.energy_tolerance));
   p.use_finishing_stage =
     choose_parameter(get_parameter(np, internal_np::use_finishing_stage), p.use_finishing_stage);
   p.relax_constraints =
@@ -74,11 +89,10 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
     checked_positive(choose_parameter(get_parameter(np, internal_np::developability_threshold),
                                       p.selection.developability_threshold),
                      "developability_threshold");
-  p.selection.maximum_patch_size = choose_parameter(
-    get_parameter(np, internal_np::maximum_patch_size), p.selection.maximum_patch_size);
-  if(p.selection.maximum_patch_size < 0)
-    throw Invalid_input("maximum_patch_size must not be negative, but is " +
-                        std::to_string(p.selection.maximum_patch_size));
+  p.selection.maximum_patch_size =
+    checked_count<int>(double(choose_parameter(get_parameter(np, internal_np::maximum_patch_size),
+                                               p.selection.maximum_patch_size)),
+                       "maximum_patch_size");
   return p;
 }
 

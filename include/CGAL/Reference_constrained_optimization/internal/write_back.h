@@ -13,6 +13,7 @@
 #include <boost/graph/graph_traits.hpp>
 
 #include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,18 @@ void write_points(const PolygonMesh& g,
       put(vpm, v, Point(p.x(), p.y(), p.z()));
     ++i;
   }
+}
+
+// A quad has no barycentric coordinates: who wants locations has to have triangles.
+template <typename NamedParameters>
+void check_location_map(const Reference_surface& reference, const NamedParameters&)
+{
+  if constexpr(!parameters::is_default_parameter<NamedParameters,
+                                                 internal_np::vertex_location_map_t>::value)
+    for(int f = 1; f < reference.mesh().number_of_faces(); ++f)
+      if(reference.original_face(f) == reference.original_face(f - 1))
+        throw Invalid_input("reference: face " + std::to_string(reference.original_face(f)) +
+                            " is a quad, but vertex_location_map needs triangles");
 }
 
 // hands out the locations on R. Barycentric coordinates are ordered as in CGAL's `locate`: source

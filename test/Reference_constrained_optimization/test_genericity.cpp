@@ -1,0 +1,323 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Several data structures, kernels and number types, parts of a mesh, and where its vertices are on R.
+
+#include "test_meshes.h"
+
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures.h>
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Linear_cell_complex_for_bgl_combinatorial_map_helper.h>
+#include <CGAL/Polygon_mesh_processing/locate.h>
+#include <CGAL/Polyhedron_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/graph_traits_Linear_cell_complex_for_combinatorial_map.h>
+
+#include <cmath>
+#include <limits>
+#include <list>
+#include <utility>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace PMP = CGAL::Polygon_mesh_processing;
+namespace params = CGAL::parameters;
+using namespace rco_test;
+
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
+typedef boost::graph_traits<Mesh>::face_descriptor Face;
+
+// -------------------------------------------------------------------------- data structures
+
+// gives the same as a Surface_mesh does, to the last bit of the mesh's number type
+template <typename M>
+void test_model(const std::string& name, double unit_in_last_place)
+{
+  const Scope scope(name);
+  const Shape regular = torus(24, 12), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
+  Mesh expected = make_mesh<Mesh>(rough);
+  // the number type rounds what goes in: compare with what the mesh holds
+  M mesh = make_mesh<M>(rough), reference = make_mesh<M>(regular);
+  expected = make_mesh<Mesh>(make_shape(mesh));
+  const Mesh expected_reference = make_mesh<Mesh>(make_shape(reference));
+  const RCO::Result r =
+    CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
+  const RCO::Result e =
+    CGAL::reference_constrained_optimize(expected, expected_reference, RCO::Minimum_angle_energy());
+  RCO_CHECK_EQUAL(r.final_energy, e.final_energy);
+  RCO_CHECK_LESS(r.final_energy, r.initial_energy);
+  const Shape a = make_shape(mesh), b = make_shape(expected);
+  RCO_CHECK(a.faces == b.faces);
+  for(std::size_t v = 0; v < a.points.size(); ++v)
+    for(int i = 0; i < 3; ++i)
+      RCO_CHECK_LESS_EQUAL(std::abs(a.points[v](i) - b.points[v](i)),
+                           unit_in_last_place * std::abs(b.points[v](i)));
+  // its own reference
+  M own = make_mesh<M>(regular);
+  RCO_CHECK(CGAL::reference_constrained_optimize(own, own, RCO::Minimum_angle_energy())
+              .number_of_free_vertices > 0);
+  // mesh and reference of two types
+  Mesh mixed = make_mesh<Mesh>(rough);
+  RCO_CHECK_LESS(CGAL::reference_constrained_optimize(mixed, reference, RCO::Minimum_angle_energy())
+                   .final_energy,
+                 r.initial_energy);
+  // part of it
+  M part = make_mesh<M>(rough);
+  std::vector<typename boost::graph_traits<M>::face_descriptor> range;
+  for(const auto f : faces(part))
+    if(range.size() < 200)
+      range.push_back(f);
+  const RCO::Result p =
+    CGAL::reference_constrained_optimize(range, part, reference, RCO::Minimum_angle_energy());
+  RCO_CHECK_LESS(0u, p.number_of_free_vertices);
+  RCO_CHECK_LESS(p.number_of_free_vertices, r.number_of_free_vertices);
+  RCO_CHECK_LESS(p.final_energy, p.initial_energy);
+}
+
+void test_models()
+{
+  typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
+  typedef CGAL::Exact_predicates_exact_constructions_kernel Epeck;
+  typedef CGAL::Linear_cell_complex_traits<3, Epick> Traits;
+  typedef CGAL::Linear_cell_complex_for_bgl_combinatorial_map_helper<2, 3, Traits>::type Cells;
+  const double ulp = std::numeric_limits<float>::epsilon();
+  test_model<Mesh>("Surface_mesh, double", 0);
+  test_model<CGAL::Surface_mesh<Epick::Point_3>>("Surface_mesh, Epick", 0);
+  test_model<CGAL::Polyhedron_3<Epick>>("Polyhedron_3, Epick", 0);
+  test_model<Cells>("Linear_cell_complex, Epick", 0);
+  test_model<CGAL::Surface_mesh<CGAL::Simple_cartesian<float>::Point_3>>("Surface_mesh, float",
+                                                                         ulp);
+  test_model<CGAL::Surface_mesh<Epeck::Point_3>>("Surface_mesh, Epeck", 0);
+}
+
+// ---------------------------------------------------------------------------------- locations
+
+template <typename R>
+void check_locations(Mesh mesh, const R& reference, bool relaxes)
+{
+  typedef typename boost::graph_traits<R>::face_descriptor Reference_face;
+  typedef std::pair<Reference_face, std::array<double, 3>> Location;
+  auto location = mesh.add_property_map<Mesh::Vertex_index, Location>("v:location").first;
+  CGAL::reference_constrained_optimize(
+    mesh, reference, RCO::Minimum_angle_energy(),
+    params::vertex_location_map(location).relax_constraints(relaxes));
+  Vector_3 low = Vector_3::Constant(1e300), high = -low;
+  for(const Vector_3& p : make_shape(reference).points)
+  {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double diagonal = (high - low).norm();
+  for(const Mesh::Vertex_index v : mesh.vertices())
+  {
+    const Location& l = location[v];
+    RCO_CHECK_NEAR(l.second[0] + l.second[1] + l.second[2], 1., 1e-14);
+    for(const double w : l.second)
+    {
+      RCO_CHECK_LESS_EQUAL(0., w);
+      RCO_CHECK_LESS_EQUAL(w, 1.);
+    }
+    const auto p = PMP::construct_point(l, reference);
+    RCO_CHECK_LESS_EQUAL(std::sqrt(CGAL::to_double(CGAL::squared_distance(p, mesh.point(v)))),
+                         1e-12 * diagonal);
+  }
+}
+
+void test_locations()
+{
+  const Scope scope("locations");
+  const Shape regular = torus(30, 14), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
+  check_locations(make_mesh<Mesh>(rough), make_mesh<Mesh>(regular), false);
+  check_locations(make_mesh<Mesh>(rough), make_mesh<CGAL::Polyhedron_3<Kernel>>(regular), false);
+  // on what is the reference already, far from the origin, with a border
+  const Shape tube = cylinder(20, 14, 1, 3);
+  Shape moved = tube;
+  for(Vector_3& p : moved.points)
+    p += Vector_3(1e3, -2e3, 5e2);
+  check_locations(make_mesh<Mesh>(moved), make_mesh<Mesh>(moved), true);
+  const Shape plane = plane_grid(9, 7);
+  check_locations(make_mesh<Mesh>(scrambled(plane, 0.4, 9, onto_plane)), make_mesh<Mesh>(plane),
+                  true);
+}
+
+// ----------------------------------------------------------------------------- part of a mesh
+
+// optimizes the faces that `is_in` names, and checks what holds for any of them
+template <typename Tag, typename NamedParameters, typename IsIn>
+RCO::Result
+optimize_part(Mesh& mesh, const Mesh& reference, const NamedParameters& np, const IsIn& is_in)
+{
+  std::list<Face> range; // any range will do
+  std::vector<char> may_move(mesh.number_of_vertices(), 1);
+  for(const Face f : mesh.faces())
+    if(is_in(std::size_t(f)))
+      range.push_back(f);
+    else
+      for(const auto v : CGAL::vertices_around_face(halfedge(f, mesh), mesh))
+        may_move[v] = 0;
+  range.insert(range.end(), range.begin(), range.end());
+  const Shape before = make_shape(mesh);
+  const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(range, mesh, reference,
+                                                                  RCO::Minimum_angle_energy(), np);
+  const Shape after = make_shape(mesh);
+  std::size_t moved = 0;
+  for(std::size_t v = 0; v < before.points.size(); ++v)
+    if(!may_move[v])
+      RCO_CHECK(same_bits(before.points[v], after.points[v]));
+    else
+      moved += !same_bits(before.points[v], after.points[v]);
+  if(r.number_of_free_vertices > 0)
+    RCO_CHECK_LESS(0u, moved);
+  RCO_CHECK_LESS_EQUAL(r.number_of_flips, r.initial_number_of_flips);
+  RCO_CHECK_LESS_EQUAL(r.number_of_fold_edges, r.initial_number_of_fold_edges);
+  return r;
+}
+
+void test_ranges()
+{
+  const Scope scope("ranges of faces");
+  typedef CGAL::Sequential_tag Tag;
+  const auto none = params::default_values();
+  const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
+  const Mesh reference = make_mesh<Mesh>(regular), start = make_mesh<Mesh>(rough);
+  const std::size_t n = rough.faces.size();
+  Mesh whole = start, mesh = start;
+  const RCO::Result all =
+    CGAL::reference_constrained_optimize(whole, reference, RCO::Minimum_angle_energy());
+  {
+    const Scope s("all faces are the whole mesh");
+    const RCO::Result r = CGAL::reference_constrained_optimize(
+      faces(mesh), mesh, reference, RCO::Minimum_angle_energy(), params::random_seed(0),
+      params::default_values());
+    RCO_CHECK(same_bits(make_shape(mesh), make_shape(whole)));
+    RCO_CHECK_EQUAL(r.final_energy, all.final_energy);
+    RCO_CHECK_EQUAL(r.drift, all.drift);
+  }
+  {
+    const Scope s("half of them");
+    mesh = start;
+    const auto is_in = [&](std::size_t f) { return f < n / 2; };
+    const RCO::Result r = optimize_part<Tag>(mesh, reference, none, is_in);
+    RCO_CHECK_LESS(r.final_energy, r.initial_energy);
+    // what the energy is of: these faces
+    double sum = 0;
+    const Shape after = make_shape(mesh);
+    for(std::size_t f = 0; f < n / 2; ++f)
+    {
+      const std::vector<int>& t = after.faces[f];
+      const Vector_3 a = after.points[t[1]] - after.points[t[0]],
+                     b = after.points[t[2]] - after.points[t[0]];
+      sum += std::exp((a.squaredNorm() + b.squaredNorm() + (a - b).squaredNorm()) /
+                      (std::sqrt(3.) * a.cross(b).norm()));
+    }
+    RCO_CHECK_NEAR(r.final_energy, sum / double(n / 2), 1e-9 * r.final_energy);
+    // as good as where the whole mesh is optimized, but for what its fixed surroundings cost
+    RCO_CHECK_LESS(r.final_energy, 0.5 * (all.initial_energy + all.final_energy));
+    Mesh flattened = start;
+    const RCO::Result f =
+      optimize_part<Tag>(flattened, reference, params::use_on_surface_steps(false), is_in);
+    RCO_CHECK_LESS(f.final_energy, f.initial_energy);
+#ifdef CGAL_LINKED_WITH_TBB
+    Mesh parallel = start;
+    optimize_part<CGAL::Parallel_tag>(parallel, reference, none, is_in);
+    RCO_CHECK(same_bits(make_shape(parallel), make_shape(mesh)));
+#endif
+  }
+  {
+    const Scope s("every other column, and faces that touch at a vertex");
+    mesh = start;
+    optimize_part<Tag>(mesh, reference, none, [](std::size_t f) { return (f / 2) % 40 % 8 < 4; });
+    mesh = start;
+    optimize_part<Tag>(mesh, reference, none, [](std::size_t f) {
+      return ((f / 2) % 40 < 10 && f / 80 < 10) || ((f / 2) % 40 >= 10 && f / 80 >= 10);
+    });
+  }
+  {
+    const Scope s("nothing to do");
+    for(const std::size_t number : {std::size_t(0), std::size_t(1)})
+    {
+      mesh = start;
+      const RCO::Result r =
+        optimize_part<Tag>(mesh, reference, none, [&](std::size_t f) { return f < number; });
+      RCO_CHECK(r.status == RCO::Status::nothing_to_do);
+      RCO_CHECK(std::isfinite(r.final_energy));
+      RCO_CHECK(same_bits(make_shape(mesh), rough));
+    }
+  }
+  {
+    const Scope s("what is outside is its own affair");
+    // two components: one on the reference, one far away, and with a quad
+    Shape two = joined(rough, torus(10, 6), Vector_3(50, 0, 0));
+    two.faces.push_back(
+      {two.add(70, 0, 0), two.add(71, 0, 0), two.add(71, 1, 0), two.add(70, 1, 0)});
+    mesh = make_mesh<Mesh>(two);
+    RCO_CHECK_THROWS(
+      CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy()),
+      RCO::Invalid_input, "has 4 vertices");
+    const RCO::Result r =
+      optimize_part<Tag>(mesh, reference, none, [&](std::size_t f) { return f < n; });
+    RCO_CHECK_NEAR(r.final_energy, all.final_energy, 0.01 * all.final_energy);
+    RCO_CHECK_NEAR(r.drift_bound, all.drift_bound, 1e-9);
+    RCO_CHECK_LESS(r.initial_drift, 0.2);
+  }
+  {
+    const Scope s("lines slide inside the range only");
+    const Shape plane = plane_grid(16, 16);
+    const Mesh flat = make_mesh<Mesh>(plane);
+    mesh = make_mesh<Mesh>(scrambled(plane, 0.4, 9, onto_plane));
+    optimize_part<Tag>(mesh, flat, params::relax_constraints(true),
+                       [](std::size_t f) { return f < 256; });
+  }
+  {
+    const Scope s("a face that is none");
+    mesh = start;
+    RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(std::vector<Face>(1, Mesh::null_face()),
+                                                          mesh, reference,
+                                                          RCO::Minimum_angle_energy()),
+                     RCO::Invalid_input, "faces: the range");
+    RCO_CHECK(same_bits(make_shape(mesh), rough));
+  }
+}
+
+// triangles and quads side by side, with an energy that is defined on both
+void test_mixed_faces()
+{
+  const Scope scope("triangles and quads");
+  const Shape quads = torus(30, 14, 1, 0.4, true), triangles = torus(30, 14);
+  Shape mixed = quads;
+  mixed.faces.clear();
+  for(std::size_t f = 0; f < quads.faces.size(); ++f)
+    if(f % 30 < 15)
+      mixed.faces.push_back(quads.faces[f]);
+    else
+      for(const std::size_t t : {2 * f, 2 * f + 1})
+        mixed.faces.push_back(triangles.faces[t]);
+  const Mesh source = make_mesh<Mesh>(mixed), reference = make_mesh<Mesh>(triangles);
+  for(const bool on_surface : {true, false})
+  {
+    Mesh mesh = make_mesh<Mesh>(scrambled(mixed, 0.2, 4, onto_torus(1, 0.4)));
+    const RCO::Result r = CGAL::reference_constrained_optimize(
+      mesh, reference, RCO::Compatible_remeshing_energy(source),
+      params::use_on_surface_steps(on_surface).drift_bound(0.05));
+    RCO_CHECK_LESS(r.final_energy - 4, 0.5 * (r.initial_energy - 4));
+    RCO_CHECK_LESS_EQUAL(r.number_of_flips + r.number_of_nonconvex_quads,
+                         r.initial_number_of_flips + r.initial_number_of_nonconvex_quads);
+    const RCO::Distance_to_reference distance = RCO::distance_to_reference(mesh, reference);
+    RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
+  }
+}
+
+int main()
+{
+  test_models();
+  test_mixed_faces();
+  test_locations();
+  test_ranges();
+  return report();
+}
