@@ -137,12 +137,15 @@ namespace CGAL {
  *                       mesh, between 4000 and 20000 triangles; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
- *     \cgalParamDescription{whether vertices on lines slide along them: vertices of constrained edges
- *                           along the line that these form at the start, border vertices that are
+ *     \cgalParamDescription{whether vertices on lines slide along them: border vertices that are
  *                           within a tenth of the mean edge length of the reference's border along
- *                           that. Ends, junctions and turns of a line by more than 60 degrees stay,
- *                           and so do vertices constrained by `vertex_is_constrained_map`. With
- *                           `false` all of them stay}
+ *                           that, vertices of constrained edges likewise along the reference's
+ *                           feature lines (see the parameter `edge_is_constrained_map` of
+ *                           `np_reference`), or along the line that they form at the start if its
+ *                           edges are parts of edges of the reference or if no feature line is near.
+ *                           Ends, junctions and turns of a line by more than 60 degrees stay, and so
+ *                           do vertices constrained by `vertex_is_constrained_map`. With `false` all
+ *                           of them stay}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
@@ -188,6 +191,14 @@ namespace CGAL {
  *     \cgalParamDescription{a property map from the vertices of `reference` to points}
  *     \cgalParamType{a model of `ReadablePropertyMap`}
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, reference)`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{edge_is_constrained_map}
+ *     \cgalParamDescription{tells the feature lines of the reference, along which vertices of
+ *                           constrained edges of `mesh` slide with `relax_constraints(true)`}
+ *     \cgalParamType{a model of `ReadablePropertyMap` with the edge descriptor of `reference` as key
+ *                    type and `bool` as value type}
+ *     \cgalParamDefault{the edges where it turns by more than 25 degrees; used only where the edges
+ *                       of a line of `mesh` are no parts of edges of the reference}
  *   \cgalParamNEnd
  * \cgalNamedParamsEnd
  *

@@ -173,6 +173,53 @@ Case crease_case(int n)
   return test;
 }
 
+// A half disk and the wall below its rim, of facets that the mesh is coarser than: the line that the
+// mesh forms along the rim is not the reference's.
+Case rim_case(int n)
+{
+  Case test = square_case(2 * n);
+  test.name = "rim";
+  const int row = 2 * n + 1, facets = 5 * n + 3;
+  for(int j = 0; j < row; ++j)
+  {
+    test.start.points[j * row + n].x() = 0.5;
+    if(j > 0)
+      test.lines.insert({(j - 1) * row + n, j * row + n});
+    test.is_line_vertex[j * row + n] = j > 0 && j < 2 * n;
+  }
+  const auto on_rim = [facets](double k) {
+    return Vector_3(std::cos(pi * k / facets), std::sin(pi * k / facets), 0);
+  };
+  const auto bend = [&](const Vector_3& p) {
+    const double k = (std::min)(std::floor(p.y() * facets + 1e-9), facets - 1.);
+    const double part = p.y() * facets - k, r = p.x() + 0.5;
+    const Vector_3 rim = (1 - part) * on_rim(k) + part * on_rim(k + 1);
+    return Vector_3((std::min)(r, 1.) * rim - (std::max)(r - 1, 0.) * Vector_3::UnitZ());
+  };
+  const int columns = 4;
+  test.reference = plane_grid(columns, facets, 1);
+  for(Vector_3& p : test.reference.points)
+    p.y() *= double(columns) / facets;
+  for(Shape* shape : {&test.start, &test.reference})
+    for(Vector_3& p : shape->points)
+      p = bend(p);
+  test.distance_to_line = [=](const Vector_3& p) {
+    // to the straight sides, and to the polygons at three radii and heights
+    double least = p.z() < 0 ? std::hypot(std::abs(p.x()) - 1, p.y()) : std::abs(p.y());
+    for(int k = 0; k < facets; ++k)
+      for(const auto& ring :
+          {std::make_pair(0.5, 0.), std::make_pair(1., 0.), std::make_pair(1., -0.5)})
+      {
+        const Vector_3 a = ring.first * on_rim(k) + ring.second * Vector_3::UnitZ(),
+                       d = ring.first * (on_rim(k + 1) - on_rim(k));
+        const double t = (std::min)(1., (std::max)(0., d.dot(p - a) / d.squaredNorm()));
+        least = (std::min)(least, (a + t * d - p).norm());
+      }
+    return least;
+  };
+  return test;
+}
+
 int main()
 {
   test_lines();
@@ -183,6 +230,7 @@ int main()
     check_case<Mesh>(square_case(12), regularity, on_surface, 0.3);
     check_case<CGAL::Polyhedron_3<Kernel>>(square_case(12), angle, on_surface, 1);
     check_case<Mesh>(crease_case(7), regularity, on_surface, 0.3);
+    check_case<Mesh>(rim_case(6), angle, on_surface, 6);
   }
   return report();
 }

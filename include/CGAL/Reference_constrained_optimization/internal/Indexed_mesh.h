@@ -86,6 +86,19 @@ public:
   int source(int c) const { return corner_vertex[c]; }
   int target(int c) const { return corner_vertex[next(c)]; }
 
+  // a face with the vertex, which must have one, and with both of an edge, -1 if there is none
+  int face_at(int v) const { return corner_face[vertex_corners[vertex_begin[v]]]; }
+  int face_at(int v, int w) const
+  {
+    for(int k = vertex_begin[v]; k < vertex_begin[v + 1]; ++k)
+    {
+      const int c = vertex_corners[k];
+      if(target(c) == w || source(previous(c)) == w)
+        return corner_face[c];
+    }
+    return -1;
+  }
+
   // the first vertex whose faces do not form one fan, or -1
   template <typename ConcurrencyTag = CGAL::Sequential_tag>
   int find_nonmanifold_vertex() const

@@ -192,24 +192,6 @@ private:
     return known_sample(mesh, patch.faces[s / 4], s % 4);
   }
 
-  // a face with the vertex, and with both of an edge; -1 if there is none
-  static int face_at(const Indexed_mesh& mesh, int v)
-  {
-    return mesh.corner_face[mesh.vertex_corners[mesh.vertex_begin[v]]];
-  }
-  static int face_at(const Indexed_mesh& mesh, int v, int w)
-  {
-    if(v < 0 || w < 0)
-      return -1;
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-    {
-      const int c = mesh.vertex_corners[k];
-      if(mesh.target(c) == w || mesh.source(mesh.previous(c)) == w)
-        return mesh.corner_face[c];
-    }
-    return -1;
-  }
-
   template <typename ConcurrencyTag>
   void welcome_guests(const Optimization_state& state, Interruption* interruption)
   {
@@ -234,11 +216,12 @@ private:
       if(r < vertices && is_used(r))
         twin[r] = index.find(state.reference.points()[r]);
       if(r < vertices)
-        face[r] = twin[r] < 0 ? -1 : face_at(mesh, twin[r]);
+        face[r] = twin[r] < 0 ? -1 : mesh.face_at(twin[r]);
       else
       {
         const int c = state.reference.crease(r);
-        face[r] = face_at(mesh, twin[reference.source(c)], twin[reference.target(c)]);
+        const int a = twin[reference.source(c)], b = twin[reference.target(c)];
+        face[r] = a < 0 || b < 0 ? -1 : mesh.face_at(a, b);
       }
       all_are_known = all_are_known && (face[r] >= 0 || !is_used(r));
     }

@@ -12,6 +12,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
@@ -81,10 +82,11 @@ void optimize(const FaceRange& range,
   interruption.check();
   const Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
   interruption.check();
-  Reference_surface surface(
-    is_own_reference(mesh, reference, np, np_reference)
-      ? copy
-      : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference"));
+  const bool is_own = is_own_reference(mesh, reference, np, np_reference);
+  const Mesh_copy other =
+    is_own ? Mesh_copy() : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
+  const Mesh_copy& reference_copy = is_own ? copy : other;
+  Reference_surface surface(reference_copy);
   check_location_map(surface, np);
   interruption.check();
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
@@ -99,7 +101,9 @@ void optimize(const FaceRange& range,
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption);
   if(loop_parameters.relax_constraints)
-    Sliding_vertices(state, constraints, result);
+    Sliding_vertices(state, constraints,
+                     read_reference_lines(reference, np_reference, reference_copy.mesh, surface),
+                     result);
   result.times.setup = seconds_since(start);
 
   const auto& density = energy.density();

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference_lines.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -20,86 +21,69 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Lets the vertices of borders and of lines of constrained edges slide, after all vertices were
-// placed. Border vertices slide along R's border if they are near it; the others along the line that
-// they form on R at the start. Ends, junctions and sharp turns of lines stay, and so do vertices that
-// are constrained themselves.
+// placed. Border vertices slide along R's border if they are near it, others along R's feature lines if
+// these are given or if the line that they form at the start is not made of edges of R; else along that
+// line. Ends, junctions and sharp turns of lines stay, and so do vertices that are constrained
+// themselves.
 class Sliding_vertices
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
   typedef std::vector<Kernel::Segment_3>::const_iterator Segment_iterator;
 
 public:
-  Sliding_vertices(Optimization_state& state, const Constraints& constraints, Result& result)
+  Sliding_vertices(Optimization_state& state,
+                   const Constraints& constraints,
+                   const Reference_lines& lines,
+                   Result& result)
     : m_state(state),
       m_result(result)
   {
-    find_neighbours(constraints);
-    slide_on_border();
-    slide_on_lines();
-    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
-      if(m_state.vertices[v].on_line.segment < 0)
-        m_state.line_neighbours[v] = {{-1, -1}};
+    const Indexed_mesh& mesh = state.mesh;
+    const int n = mesh.number_of_vertices();
+    Line_edges edges;
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+      if(constraints.is_line[c] && mesh.opposite[c] < c) // once for each edge
+        edges.push_back({{mesh.source(c), mesh.target(c)}});
+    const auto position = [&](int v) { return state.vertices[v].on_reference.position; };
+    state.line_neighbours = line_neighbours(
+      edges, n, position, [&](int v) { return constraints.is_constrained[v] != 0; });
+
+    slide_on(lines.border, [&](int v) { return mesh.is_border_vertex[v] != 0; });
+    slide_on(lines.features, [&](int v) {
+      return !mesh.is_border_vertex[v] &&
+             (lines.features_are_given || !own_line_is_on_reference(v));
+    });
+    slide_on_own(edges, position);
+    for(int v = 0; v < n; ++v)
+      if(state.vertices[v].on_line.segment < 0)
+        state.line_neighbours[v] = {{-1, -1}};
   }
 
 private:
-  const Vector_3& position(int v) const { return m_state.vertices[v].on_reference.position; }
-
-  // of vertices at which a line goes on without a sharp turn
-  void find_neighbours(const Constraints& constraints)
+  // lines of R
+  template <typename IsMeant>
+  void slide_on(const Line_edges& edges, const IsMeant& is_meant)
   {
-    const Indexed_mesh& mesh = m_state.mesh;
-    const int n = mesh.number_of_vertices();
-    std::vector<int> count(n, 0);
-    m_state.line_neighbours.assign(n, {{-1, -1}});
-    const auto meet = [&](int v, int w) {
-      if(count[v] < 2)
-        m_state.line_neighbours[v][count[v]] = w;
-      ++count[v];
-    };
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(constraints.is_line[c] && mesh.opposite[c] < c) // once for each edge
-      {
-        meet(mesh.target(c), mesh.source(c));
-        meet(mesh.source(c), mesh.target(c));
-      }
-    const double cosine_of_sharp_turn = 0.5;
-    for(int v = 0; v < n; ++v)
-    {
-      std::array<int, 2>& next_to = m_state.line_neighbours[v];
-      const bool goes_on =
-        count[v] == 2 && !constraints.is_constrained[v] &&
-        (position(v) - position(next_to[0]))
-            .normalized()
-            .dot((position(next_to[1]) - position(v)).normalized()) > cosine_of_sharp_turn;
-      if(!goes_on)
-        next_to = {{-1, -1}};
-    }
-  }
-
-  void slide_on_border()
-  {
-    const Indexed_mesh& reference = m_state.reference.mesh();
     const std::vector<Vector_3>& points = m_state.reference.points();
-    std::vector<int> starting(points.size(), -1); // per vertex of R: the border segment from it
+    const Indexed_mesh& reference = m_state.reference.mesh();
+    const auto position = [&](int v) { return points[v]; };
+    const std::size_t first = m_state.lines.segments().size();
+    add_lines(
+      edges, line_neighbours(edges, int(points.size()), position, [](int) { return false; }),
+      position, [&](int v, int w) { return reference.face_at(v, w); }, m_state.lines);
     std::vector<Kernel::Segment_3> segments;
     std::vector<int> line_segment; // of each of them
-    const auto point = [&](int v) {
-      return Kernel::Point_3(points[v].x(), points[v].y(), points[v].z());
-    };
-    for(int c = 0; c < reference.number_of_corners(); ++c)
-      if(reference.opposite[c] < 0 && points[reference.source(c)] != points[reference.target(c)])
-      {
-        const int s = reference.source(c), t = reference.target(c);
-        starting[s] = m_state.lines.add(points[s], points[t], reference.corner_face[c]);
-        segments.emplace_back(point(s), point(t));
-        line_segment.push_back(starting[s]);
-      }
+    const auto point = [](const Vector_3& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
+    for(std::size_t i = first; i < m_state.lines.segments().size(); ++i)
+    {
+      const Slide_lines::Segment& s = m_state.lines[int(i)];
+      if(s.from == s.to)
+        continue;
+      segments.emplace_back(point(s.from), point(s.to));
+      line_segment.push_back(int(i));
+    }
     if(segments.empty())
       return;
-    for(int c = 0; c < reference.number_of_corners(); ++c)
-      if(reference.opposite[c] < 0 && starting[reference.source(c)] >= 0 &&
-         starting[reference.target(c)] >= 0)
-        m_state.lines.connect(starting[reference.source(c)], starting[reference.target(c)]);
 
     Segment_tree<Kernel, Segment_iterator> tree(segments.begin(), segments.end());
     std::vector<Vector_3> positions;
@@ -108,10 +92,10 @@ private:
     const double near = 0.1 * mean_edge_length(m_state.mesh, positions);
     for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
     {
-      if(m_state.line_neighbours[v][0] < 0 || !m_state.mesh.is_border_vertex[v])
+      if(m_state.line_neighbours[v][0] < 0 || !is_meant(v))
         continue;
       const Vector_3& p = positions[v];
-      const auto hit = tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z()));
+      const auto hit = tree.closest_point_and_primitive(point(p));
       const Vector_3 q(hit.first.x(), hit.first.y(), hit.first.z());
       if((p - q).norm() > near)
         continue;
@@ -123,55 +107,45 @@ private:
     }
   }
 
-  // lines of constrained edges inside the mesh
-  void slide_on_lines()
+  // whether the edges of the mesh on both sides are parts of edges of R: chords of a rim are not, though
+  // they may be on R, too
+  bool own_line_is_on_reference(int v) const
+  {
+    const Reference_surface& reference = m_state.reference;
+    const Surface_point& here = m_state.vertices[v].on_reference;
+    for(const int w : m_state.line_neighbours[v])
+    {
+      const Vector_3 middle = 0.5 * (here.position + m_state.vertices[w].on_reference.position);
+      const Surface_point foot = reference.descend(middle, here.face);
+      if((foot.position - middle).norm() > 1e-9 * reference.diagonal() ||
+         foot.barycentric.minCoeff() > 1e-6)
+        return false;
+    }
+    return true;
+  }
+
+  // lines of the mesh inside it, where R has none
+  template <typename PointAccess>
+  void slide_on_own(Line_edges edges, const PointAccess& position)
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    const int n = mesh.number_of_vertices();
-    const auto is_sliding = [&](int v) {
-      return !mesh.is_border_vertex[v] && m_state.line_neighbours[v][0] >= 0;
+    const auto slides = [&](int v) {
+      return !mesh.is_border_vertex[v] && m_state.line_neighbours[v][0] >= 0 &&
+             m_state.vertices[v].on_line.segment < 0;
     };
-    std::vector<int> arriving(n, -1); // per vertex: the segment that ends in it
-    const auto segment = [&](int v, int w) {
-      return m_state.lines.add(position(v), position(w), -1);
-    };
-    std::vector<Line_point> starts(n);
-    for(int first = 0; first < n; ++first)
-    {
-      if(!is_sliding(first) || arriving[first] >= 0)
-        continue;
-      // back to where the line starts, or once round
-      int v = first, before = m_state.line_neighbours[first][0];
-      while(is_sliding(before) && before != first)
-      {
-        const std::array<int, 2>& next_to = m_state.line_neighbours[before];
-        const int further = next_to[0] == v ? next_to[1] : next_to[0];
-        v = before;
-        before = further;
-      }
-      const int start = v;
-      arriving[v] = segment(before, v);
-      while(true)
-      {
-        const std::array<int, 2>& next_to = m_state.line_neighbours[v];
-        const int next = next_to[0] == before ? next_to[1] : next_to[0];
-        if(next == start && is_sliding(next))
-        {
-          m_state.lines.connect(arriving[v], arriving[start]);
-          break;
-        }
-        const int s = segment(v, next);
-        m_state.lines.connect(arriving[v], s);
-        if(!is_sliding(next))
-          break;
-        arriving[next] = s;
-        before = v;
-        v = next;
-      }
-    }
-    for(int v = 0; v < n; ++v)
-      if(arriving[v] >= 0)
-        release(v, {arriving[v], 1});
+    edges.erase(
+      std::remove_if(edges.begin(), edges.end(),
+                     [&](const std::array<int, 2>& e) { return !slides(e[0]) && !slides(e[1]); }),
+      edges.end());
+    std::vector<std::array<int, 2>> neighbours = m_state.line_neighbours;
+    for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      if(!slides(v))
+        neighbours[v] = {{-1, -1}};
+    const std::vector<Line_point> points = add_lines(
+      edges, neighbours, position, [](int, int) { return -1; }, m_state.lines);
+    for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      if(slides(v))
+        release(v, points[v]);
   }
 
   void release(int v, const Line_point& where)
