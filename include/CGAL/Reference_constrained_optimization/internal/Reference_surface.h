@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -44,12 +45,17 @@ public:
       m_search(std::make_unique<Search>())
   {
     split(copy);
-    compute_normals();
     m_diagonal = bounding_box_diagonal(m_points);
+    // fourth powers of lengths, those of small edges too, must stay in the range of double
+    const double smallest = 1e-60, largest = 1e60;
+    if(m_diagonal > 0 && !(m_diagonal > smallest && m_diagonal < largest))
+      throw Invalid_input("reference: its diagonal is not between 1e-60 and 1e60: other units of "
+                          "length are needed");
+    if(!has_area(m_mesh, [this](int v) -> const Vector_3& { return m_points[v]; }))
+      throw Invalid_input("reference: every face has zero area");
+    compute_normals();
     m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
     m_area = surface_area(m_mesh, m_points);
-    if(!(m_area > 0))
-      throw Invalid_input("reference: every face has zero area");
   }
 
   const Indexed_mesh& mesh() const { return m_mesh; }

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
@@ -77,6 +78,8 @@ Result optimize(PolygonMesh& mesh,
     is_own_reference(mesh, reference, own_np, own_np_reference)
       ? copy
       : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference"));
+  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return copy.points[v]; }))
+    throw Invalid_input("mesh: every face has zero area");
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                                mean_edge_length(copy.mesh, copy.points),
                                surface_area(copy.mesh, copy.points), surface.area());
@@ -86,6 +89,9 @@ Result optimize(PolygonMesh& mesh,
   const Constraints constraints = read_constraints(mesh, own_np, copy.mesh);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result);
+  // nothing of R would be closest to such a mesh
+  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
+    throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
   if(loop_parameters.relax_constraints)
     Sliding_vertices(state, constraints, result);
   result.times.setup = seconds_since(start);
