@@ -250,17 +250,25 @@ private:
   void compute_normals()
   {
     m_normals.assign(m_points.size(), Vector_3::Zero());
+    std::vector<double> areas(m_points.size(), 0);
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
       const Vector_3 a = face_vector_area(m_mesh, m_points, f);
+      const double area = a.norm();
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+      {
         m_normals[m_mesh.corner_vertex[c]] += a;
+        areas[m_mesh.corner_vertex[c]] += area;
+      }
     }
-    for(Vector_3& n : m_normals)
+    for(std::size_t v = 0; v < m_normals.size(); ++v)
     {
-      const double length = n.norm();
-      if(length > 0)
-        n /= length;
+      // where faces cancel out, as on a rim folded flat, rounding has no say in where outside is
+      const double length = m_normals[v].norm(), rounding = 1e-14 * areas[v];
+      if(length > rounding)
+        m_normals[v] /= length;
+      else
+        m_normals[v].setZero();
     }
   }
 
