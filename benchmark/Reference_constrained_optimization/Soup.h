@@ -95,9 +95,8 @@ inline Soup torus(int nx, int ny, double big, double small)
 
 inline Soup cylinder(int nx, int ny)
 {
-  return wrapped(nx, ny, false, [](double u, double h) {
-    return Kernel::Point_3(std::cos(u), std::sin(u), h);
-  });
+  return wrapped(nx, ny, false,
+                 [](double u, double h) { return Kernel::Point_3(std::cos(u), std::sin(u), h); });
 }
 
 inline Soup tetrahedron()

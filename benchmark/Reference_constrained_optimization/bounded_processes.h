@@ -50,11 +50,8 @@ inline void set_bounds(const Process_bounds& bounds)
 // at a time; what it returns is the exit code. `on_end(i, ended)` is called in this process, in the
 // order in which they end. Texts are cut off at what a pipe holds for sure.
 template <typename T, typename Function, typename On_end>
-void run_bounded(int n,
-                 int at_once,
-                 const Process_bounds& bounds,
-                 const Function& function,
-                 const On_end& on_end)
+void run_bounded(
+  int n, int at_once, const Process_bounds& bounds, const Function& function, const On_end& on_end)
 {
   static_assert(std::is_trivially_copyable<T>::value, "a result goes from process to process");
   struct Running

@@ -3,6 +3,7 @@
 
 // One call of the package, with everything checked that it promises.
 
+#include "Locations.h"
 #include "Monotonicity_visitor.h"
 #include "meshes.h"
 #include "outcome.h"
@@ -13,11 +14,13 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -33,6 +36,7 @@ struct Run_figures
 struct Run_settings
 {
   bool on_surface = true, finishing = true, relax_constraints = false;
+  unsigned int seed = 0;
 };
 
 typedef Mesh::Property_map<Mesh::Vertex_index, bool> Vertex_map;
@@ -66,6 +70,7 @@ inline CGAL::Reference_constrained_optimization::Result
 call(Mesh& mesh,
      const Mesh* reference, // none: the mesh itself
      const Vertex_map& is_constrained,
+     const Locations::Map& locations,
      const Run_settings& s,
      unsigned int iterations,
      Monotonicity_visitor& visitor)
@@ -75,17 +80,26 @@ call(Mesh& mesh,
     CGAL::Reference_constrained_optimization::Minimum_angle_energy(),
     CGAL::parameters::use_on_surface_steps(s.on_surface)
       .use_finishing_stage(s.finishing)
+      .vertex_location_map(locations)
+      .random_seed(s.seed)
       .number_of_iterations(iterations)
       .vertex_is_constrained_map(is_constrained)
       .relax_constraints(s.relax_constraints)
       .visitor(std::ref(visitor)));
 }
 
+// a mesh as the package leaves it, and where it says that the vertices lie
+struct Located
+{
+  const Mesh& mesh;
+  const Locations& locations;
+};
+
 // What the result breaks. `placed` is the input with its free vertices put onto the reference: that is
 // what must not become worse.
 inline std::string broken_promises(const Mesh& input,
-                                   const Mesh& placed,
-                                   const Mesh& output,
+                                   const Located& placed,
+                                   const Located& output,
                                    const Mesh& reference,
                                    const std::vector<char>& is_fixed,
                                    const CGAL::Reference_constrained_optimization::Result& r,
@@ -93,11 +107,11 @@ inline std::string broken_promises(const Mesh& input,
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
   Broken_promises broken;
-  broken.add_if(!same_connectivity(input, output), "connectivity changed");
+  broken.add_if(!same_connectivity(input, output.mesh), "connectivity changed");
   std::size_t bad = 0, moved = 0;
-  for(const Mesh::Vertex_index v : output.vertices())
+  for(const Mesh::Vertex_index v : input.vertices())
   {
-    const Kernel::Point_3& p = output.point(v);
+    const Kernel::Point_3& p = output.mesh.point(v);
     bad += !(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
     moved += is_fixed[v] && input.point(v) != p;
   }
@@ -113,24 +127,33 @@ inline std::string broken_promises(const Mesh& input,
                                             std::to_string(defects_in) + " to " +
                                             std::to_string(defects_out));
   broken.add_if(defects_out == defects_in && r.final_energy > r.initial_energy,
-                "energy rose from " + std::to_string(r.initial_energy) + " to " +
-                  std::to_string(r.final_energy));
-  try
+                "energy rose from " + in_short(r.initial_energy) + " by " +
+                  in_short(r.final_energy - r.initial_energy));
+  const auto is_free = [&](Mesh::Vertex_index v) { return !is_fixed[v]; };
+  Defects_in_and_out defects;
+  if(CGAL::is_triangle_mesh(reference))
   {
-    const Defects_in_and_out defects = {RCO::orientation_defects(placed, reference),
-                                        RCO::orientation_defects(output, reference)};
-    broken.check_run(placed, output, reference, defects, monotonicity_violations,
-                     [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); });
+    defects.in = placed.locations.orientation_defects(true);
+    defects.out = output.locations.orientation_defects(false);
+    double largest = 0;
+    for(const Mesh::Vertex_index v : reference.vertices())
+      for(int i = 0; i < 3; ++i)
+        largest = (std::max)(largest, std::abs(reference.point(v)[i]));
+    const double distance = output.locations.largest_distance(is_free);
+    broken.add_if(distance > 8 * std::numeric_limits<double>::epsilon() * largest,
+                  "a vertex is " + in_short(distance) + " away from its location");
   }
-  catch(const std::exception& e)
-  {
-    broken.add_if(true, std::string("result cannot be measured: ") + e.what());
-  }
-  const double before = RCO::angle_statistics(placed).minimum;
-  const double after = RCO::angle_statistics(output).minimum;
-  broken.add_if(defects_out == defects_in && after < before,
-                "minimum angle fell from " + std::to_string(before) + " to " +
-                  std::to_string(after));
+  else // there are no locations
+    defects = {RCO::orientation_defects(placed.mesh, reference),
+               RCO::orientation_defects(output.mesh, reference)};
+  broken.check_run(placed.mesh, output.mesh, reference, defects, monotonicity_violations, is_free);
+
+  const double before = RCO::angle_statistics(placed.mesh).minimum;
+  const double after = RCO::angle_statistics(output.mesh).minimum;
+  const double rounding = 1e-6; // of a small angle that is found by its cosine
+  broken.add_if(defects_out == defects_in && after < before - rounding,
+                "minimum angle fell from " + in_short(before) + " degrees by " +
+                  in_short(before - after));
   return broken.text();
 }
 
@@ -151,6 +174,8 @@ inline Outcome checked_run(const Mesh& input,
     return map;
   };
   const Vertex_map map = constraints(mesh), placed_map = constraints(placed);
+  const Locations locations(mesh, reference ? *reference : input),
+    placed_locations(placed, reference ? *reference : input);
   figures.number_of_faces = mesh.number_of_faces();
   try
   {
@@ -158,7 +183,7 @@ inline Outcome checked_run(const Mesh& input,
     RCO::Result r;
     try
     {
-      r = call(mesh, reference, map, settings, 30, visitor);
+      r = call(mesh, reference, map, locations.map(), settings, 30, visitor);
     }
     catch(const RCO::Invalid_input& e)
     {
@@ -171,7 +196,7 @@ inline Outcome checked_run(const Mesh& input,
     figures.seconds = r.running_time;
     figures.number_of_free_vertices = r.number_of_free_vertices;
     Monotonicity_visitor unused;
-    call(placed, reference, placed_map, settings, 0, unused);
+    call(placed, reference, placed_map, placed_locations.map(), settings, 0, unused);
 
     // borders slide if constraints are relaxed: then only what the map constrains must stay
     std::vector<char> is_fixed(input.number_of_vertices(), 0);
@@ -180,8 +205,8 @@ inline Outcome checked_run(const Mesh& input,
     for(const Mesh::Edge_index e : input.edges())
       if(input.is_border(e) && !settings.relax_constraints)
         is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
-    text = broken_promises(input, placed, mesh, reference ? *reference : input, is_fixed, r,
-                           visitor.violations);
+    text = broken_promises(input, {placed, placed_locations}, {mesh, locations},
+                           reference ? *reference : input, is_fixed, r, visitor.violations);
     const RCO::Angle_statistics in = RCO::angle_statistics(placed),
                                 out = RCO::angle_statistics(mesh);
     figures.angle_minimum_in = in.minimum;

@@ -9,8 +9,7 @@
 #include <vector>
 
 // The values are exit codes of processes; small ones belong to whatever else ends a process.
-enum class Outcome
-{
+enum class Outcome {
   improved = 20,
   nothing_to_do,
   refused,
@@ -28,16 +27,15 @@ struct Named_outcome
   const char* name;
 };
 
-const std::array<Named_outcome, 9> all_outcomes = {
-  {{Outcome::improved, "improved"},
-   {Outcome::nothing_to_do, "nothing to do"},
-   {Outcome::refused, "refused"},
-   {Outcome::no_mesh, "no mesh"},
-   {Outcome::broken_promise, "broken promise"},
-   {Outcome::exception, "exception"},
-   {Outcome::out_of_memory, "memory"},
-   {Outcome::time_out, "time-out"},
-   {Outcome::crash, "crash"}}};
+const std::array<Named_outcome, 9> all_outcomes = {{{Outcome::improved, "improved"},
+                                                    {Outcome::nothing_to_do, "nothing to do"},
+                                                    {Outcome::refused, "refused"},
+                                                    {Outcome::no_mesh, "no mesh"},
+                                                    {Outcome::broken_promise, "broken promise"},
+                                                    {Outcome::exception, "exception"},
+                                                    {Outcome::out_of_memory, "memory"},
+                                                    {Outcome::time_out, "time-out"},
+                                                    {Outcome::crash, "crash"}}};
 
 inline bool is_outcome(int exit_code)
 {

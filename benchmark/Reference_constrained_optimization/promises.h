@@ -8,7 +8,15 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <string>
+
+inline std::string in_short(double x)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2g", x);
+  return text;
+}
 
 struct Defects_in_and_out
 {
@@ -42,10 +50,13 @@ public:
       output, reference, none, none, is_free);
     add_if(monotonicity_violations > 0,
            std::to_string(monotonicity_violations) + " patches not monotone");
-    add_if(!distance.is_on_reference(),
-           "vertex " + std::to_string(distance.vertex) + " off the reference");
+    add_if(!distance.is_on_reference(), "vertex " + std::to_string(distance.vertex) +
+                                          " off the reference by " + in_short(distance.maximum) +
+                                          " (tolerance " + in_short(distance.tolerance) + ")");
     add_if(moved > 0, std::to_string(moved) + " fixed vertices moved");
-    add_if(defects.out.total() > defects.in.total(), "flips and folds rose");
+    add_if(defects.out.total() > defects.in.total(), "flips and folds rose from " +
+                                                       std::to_string(defects.in.total()) + " to " +
+                                                       std::to_string(defects.out.total()));
   }
 
   const std::string& text() const { return m_text; }
