@@ -124,9 +124,8 @@ private:
         areas[v] += length(n);
       }
     for(std::size_t v = 0; v < areas.size(); ++v)
-      normals[v] = length(normals[v]) > 1e-14 * areas[v]
-                     ? unit(normals[v])
-                     : Kernel::Vector_3(CGAL::NULL_VECTOR);
+      normals[v] = length(normals[v]) > 1e-14 * areas[v] ? unit(normals[v])
+                                                         : Kernel::Vector_3(CGAL::NULL_VECTOR);
     return normals;
   }
   double edge_length(Mesh::Halfedge_index h) const

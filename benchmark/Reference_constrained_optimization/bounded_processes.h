@@ -11,6 +11,14 @@
 #include <string>
 #include <type_traits>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RCO_HAS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RCO_HAS_SANITIZER
+#endif
+#endif
+
 struct Process_bounds
 {
   double seconds = 120; // of the processor's time, which other programs do not lengthen
@@ -39,8 +47,7 @@ inline void set_bounds(const Process_bounds& bounds)
   };
   set(RLIMIT_CORE, 0);
   set(RLIMIT_CPU, rlim_t(std::ceil(bounds.seconds)));
-  // the address sanitizer reserves more address space than there is memory
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef RCO_HAS_SANITIZER // they reserve more address space than there is memory
   set(RLIMIT_AS, rlim_t(bounds.megabytes * 1024 * 1024));
 #endif
   set_alarm(5 * bounds.seconds); // a process that waits for ever uses no processor

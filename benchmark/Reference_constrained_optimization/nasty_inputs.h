@@ -5,6 +5,7 @@
 
 #include "Soup.h"
 #include "outcome.h"
+#include "promises.h"
 
 #include <algorithm>
 #include <cmath>
@@ -225,13 +226,13 @@ inline std::vector<Nasty_input> nasty_inputs()
   lonely_nan.add(nan, 0, 0);
   add("isolated vertex with NaN", lonely_nan,
       is_refused("mesh: vertex " + std::to_string(ball.points.size()) + " has a coordinate"));
-  // squares of these leave the range of double: such input may be refused, nothing worse
-  const Expectation optimized_or_refused = {
-    {Outcome::improved, Outcome::nothing_to_do, Outcome::refused}, ""};
-  add("coordinates of 1e160", scaled(ball, 1e160, 1e160, 1e160), optimized_or_refused);
-  add("coordinates of 1e-170", scaled(ball, 1e-170, 1e-170, 1e-170), optimized_or_refused);
-  add("coordinates of 1e100", scaled(ball, 1e100, 1e100, 1e100), optimized_or_refused);
-  add("coordinates of 1e-100", scaled(ball, 1e-100, 1e-100, 1e-100), optimized_or_refused);
+  // squares of areas of these leave the range of double
+  for(const double size : {1e160, 1e100, 1e-100})
+    add("coordinates of " + in_short(size), scaled(ball, size, size, size),
+        is_refused("reference: its diagonal is not between"));
+  add("coordinates of 1e-170", scaled(ball, 1e-170, 1e-170, 1e-170), is_refused("reference: "));
+  add("coordinates of 1e50", scaled(ball, 1e50, 1e50, 1e50), improves);
+  add("coordinates of 1e-50", scaled(ball, 1e-50, 1e-50, 1e-50), improves);
 
   // no area
   Soup twins = ball;

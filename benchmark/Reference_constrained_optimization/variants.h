@@ -30,6 +30,11 @@ const std::array<Variant, 8> variants = {{{"as is", 1, 0, 0},
                                           {"another seed", 1, 0, 0, 1},
                                           {"noise", 1, 0, 0.3}}};
 
+inline bool is_as_is(const Variant& v)
+{
+  return v.scale == 1 && v.shift == 0 && v.noise == 0 && v.seed == 0;
+}
+
 inline bool is_exact(const Variant& v)
 {
   int exponent = 0;
