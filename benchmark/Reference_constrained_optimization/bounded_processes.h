@@ -41,12 +41,13 @@ inline bool is_time_out(int signal) { return signal == SIGXCPU || signal == SIGA
 
 inline void set_bounds(const Process_bounds& bounds)
 {
-  const auto set = [](int resource, rlim_t value) {
-    const struct rlimit limit = {value, value};
+  // at the first limit of time there is a signal that tells what happened
+  const auto set = [](int resource, rlim_t value, rlim_t margin = 0) {
+    const struct rlimit limit = {value, value + margin};
     setrlimit(resource, &limit);
   };
   set(RLIMIT_CORE, 0);
-  set(RLIMIT_CPU, rlim_t(std::ceil(bounds.seconds)));
+  set(RLIMIT_CPU, rlim_t(std::ceil(bounds.seconds)), 5);
 #ifndef RCO_HAS_SANITIZER // they reserve more address space than there is memory
   set(RLIMIT_AS, rlim_t(bounds.megabytes * 1024 * 1024));
 #endif
