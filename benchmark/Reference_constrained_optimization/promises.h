@@ -8,7 +8,15 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <string>
+
+inline std::string in_short(double x)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2g", x);
+  return text;
+}
 
 struct Defects_in_and_out
 {
@@ -34,18 +42,34 @@ public:
                  std::size_t monotonicity_violations,
                  const Is_free& is_free)
   {
+    check_run(input, output, reference, defects, monotonicity_violations, is_free, is_free);
+  }
+
+  // the same where not all that may move are on the reference, as borders that slide
+  template <typename May_move, typename Is_on_reference>
+  void check_run(const Mesh& input,
+                 const Mesh& output,
+                 const Mesh& reference,
+                 const Defects_in_and_out& defects,
+                 std::size_t monotonicity_violations,
+                 const May_move& may_move,
+                 const Is_on_reference& is_on_reference)
+  {
     std::size_t moved = 0;
     for(const Mesh::Vertex_index v : input.vertices())
-      moved += !is_free(v) && input.point(v) != output.point(v);
+      moved += !may_move(v) && input.point(v) != output.point(v);
     const auto none = CGAL::parameters::default_values();
     const auto distance = CGAL::Reference_constrained_optimization::distance_to_reference(
-      output, reference, none, none, is_free);
+      output, reference, none, none, is_on_reference);
     add_if(monotonicity_violations > 0,
            std::to_string(monotonicity_violations) + " patches not monotone");
-    add_if(!distance.is_on_reference(),
-           "vertex " + std::to_string(distance.vertex) + " off the reference");
+    add_if(!distance.is_on_reference(), "vertex " + std::to_string(distance.vertex) +
+                                          " off the reference by " + in_short(distance.maximum) +
+                                          " (tolerance " + in_short(distance.tolerance) + ")");
     add_if(moved > 0, std::to_string(moved) + " fixed vertices moved");
-    add_if(defects.out.total() > defects.in.total(), "flips and folds rose");
+    add_if(defects.out.total() > defects.in.total(), "flips and folds rose from " +
+                                                       std::to_string(defects.in.total()) + " to " +
+                                                       std::to_string(defects.out.total()));
   }
 
   const std::string& text() const { return m_text; }

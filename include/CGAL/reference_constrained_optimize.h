@@ -204,10 +204,10 @@ namespace CGAL {
  *
  * \return what was done and reached.
  *
- * \throws Reference_constrained_optimization::Invalid_input if a mesh is empty, not manifold, has a
- *         coordinate that is not finite or a face that the energy cannot use, if a vertex is
- *         further from the reference than a tenth of the reference's diagonal, or if a parameter
- *         makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
+ * \throws Reference_constrained_optimization::Invalid_input if a mesh is empty, not manifold, without
+ *         area, has a coordinate that is not finite or a face that the energy cannot use, if a vertex is
+ *         further from the reference than a tenth of the reference's diagonal, if that diagonal is not
+ *         between 1e-60 and 1e60, or if a parameter makes no sense. The mesh is then untouched. If a visitor throws, the mesh holds the last
  *         accepted state.
  *
  * Isolated vertices and faces without area are no errors: the former are kept and ignored, the latter

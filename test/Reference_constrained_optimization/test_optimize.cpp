@@ -611,6 +611,17 @@ void test_degenerate_faces()
                           held.after.points[t[2]]) < 15;
   RCO_CHECK_LESS_EQUAL(bad, std::size_t(40));
 
+  // a mesh without any area is refused, not touched
+  Shape line = plane_grid(5, 5);
+  for(Vector_3& p : line.points)
+    p = Vector_3(p.x(), 0.1 + 0.7 * p.x(), 1e-3);
+  Mesh held_back = make_mesh<Mesh>(line);
+  const Mesh plane = make_mesh<Mesh>(plane_grid(4, 4, 2));
+  RCO_CHECK_THROWS(
+    CGAL::reference_constrained_optimize(held_back, plane, RCO::Minimum_angle_energy()),
+    RCO::Invalid_input, "mesh: every face has zero area");
+  RCO_CHECK(same_bits(make_shape(held_back), line));
+
   // a reference with faces of no area
   const Outcome both = optimized(scrambled(regular, 0.25, 9, onto_sphere), shape);
   RCO_CHECK_LESS(both.result.final_energy, both.result.initial_energy);

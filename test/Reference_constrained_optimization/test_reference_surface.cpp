@@ -97,6 +97,23 @@ void test_closest_barycentric()
   RCO_CHECK(inside > 100 && on_side > 100 && at_corner > 100);
 }
 
+// a point of a long needle is found there, whichever vertex comes first
+void test_closest_in_needles()
+{
+  const Scope scope("closest_barycentric in needles");
+  Random random(11);
+  for(int i = 0; i < 3000; ++i)
+  {
+    const double length = std::pow(10., random(3, 9));
+    std::array<Vector_3, 3> t = {{random.in_cube(1), random.in_cube(1), random.in_cube(1)}};
+    t[i % 3] = length * random.in_cube(1);
+    const Vector_3 s = random.barycentric();
+    const Vector_3 p = s(0) * t[0] + s(1) * t[1] + s(2) * t[2];
+    const Vector_3 b = internal::closest_barycentric(p, t[0], t[1], t[2]);
+    RCO_CHECK_LESS_EQUAL((b(0) * t[0] + b(1) * t[1] + b(2) * t[2] - p).norm(), 1e-11 * length);
+  }
+}
+
 // the smallest distance to any face
 double brute_force_distance(const internal::Reference_surface& surface, const Vector_3& p)
 {
@@ -409,6 +426,17 @@ void test_normals()
   for(int f = 0; f < plane.mesh().number_of_faces(); ++f)
     RCO_CHECK_LESS_EQUAL(
       (plane.normal(plane.point(f, Vector_3(0.1, 0.2, 0.7))) - Vector_3::UnitZ()).norm(), 1e-12);
+  // two sides that cancel out leave rounding: no side of it is outside
+  for(int i = 0; i < 100; ++i)
+  {
+    const Vector_3 u = random.in_cube(1).normalized();
+    const Vector_3 v = u.cross(random.in_cube(1)).normalized();
+    Shape folded;
+    folded.points = {u, v, Vector_3(random(-0.1, 0.1) * u - random(1, 2) * v)};
+    folded.faces = {{0, 1, 2}, {2, 1, 0}};
+    const internal::Reference_surface two_sided = surface_of(folded);
+    RCO_CHECK_EQUAL(two_sided.normal(two_sided.point(0, random.barycentric())).norm(), 0.);
+  }
   // by the definition, at one vertex of an irregular mesh
   const Shape rough = scrambled(icosphere(1), 0.3, 8, onto_sphere);
   const internal::Reference_surface surface = surface_of(rough);
@@ -490,6 +518,24 @@ void test_bad_references()
   flat.add(2, 0, 0);
   flat.triangle(0, 1, 2);
   RCO_CHECK_THROWS(surface_of(flat), RCO::Invalid_input, "zero area");
+  // neither where rounding makes one
+  Random random(12);
+  for(int i = 0; i < 100; ++i)
+  {
+    Shape line = icosphere(1);
+    const Vector_3 origin = random.in_cube(100), direction = random.in_cube(1);
+    for(Vector_3& p : line.points)
+      p = origin + p.x() * direction;
+    RCO_CHECK_THROWS(surface_of(line), RCO::Invalid_input, "zero area");
+  }
+  // squares of areas would leave the range of double
+  for(const double scale : {1e-200, 1e-100, 1e100, 1e200})
+  {
+    Shape shape = icosphere(1);
+    for(Vector_3& p : shape.points)
+      p *= scale;
+    RCO_CHECK_THROWS(surface_of(shape), RCO::Invalid_input, "reference: ");
+  }
   // some faces without area do no harm
   Shape shape = icosphere(2);
   shape.points[20] = shape.points[indexed(shape).target(
@@ -515,6 +561,7 @@ void test_bad_references()
 int main()
 {
   test_closest_barycentric();
+  test_closest_in_needles();
   test_closest(icosphere(2), "a sphere");
   test_closest(double_sheet(8, 1e-3, 0.05), "a double sheet");
   test_closest(joined(torus(16, 8), tetrahedron(), Vector_3(1, 0, 0)), "two components");

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -45,15 +46,18 @@ public:
       m_search(std::make_unique<Search>())
   {
     split(copy);
+    m_diagonal = bounding_box_diagonal(m_points);
+    // fourth powers of lengths, those of small edges too, must stay in the range of double
+    const double smallest = 1e-60, largest = 1e60;
+    if(m_diagonal > 0 && !(m_diagonal > smallest && m_diagonal < largest))
+      throw Invalid_input("reference: its diagonal is not between 1e-60 and 1e60: other units of "
+                          "length are needed");
+    if(!has_area(m_mesh, [this](int v) -> const Vector_3& { return m_points[v]; }))
+      throw Invalid_input("reference: every face has zero area");
     compute_normals();
     find_creases();
-    m_diagonal = bounding_box_diagonal(m_points);
     m_mean_edge_length = internal::mean_edge_length(m_mesh, m_points);
     m_area = surface_area(m_mesh, m_points);
-    if(!std::isfinite(m_area) || !std::isfinite(m_diagonal))
-      throw Invalid_input("reference: the coordinates are so large that areas are not finite");
-    if(!(m_area > 0))
-      throw Invalid_input("reference: every face has zero area");
   }
 
   const Indexed_mesh& mesh() const { return m_mesh; }
@@ -273,17 +277,25 @@ private:
   void compute_normals()
   {
     m_normals.assign(m_points.size(), Vector_3::Zero());
+    std::vector<double> areas(m_points.size(), 0);
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
       const Vector_3 a = face_vector_area(m_mesh, m_points, f);
+      const double area = a.norm();
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+      {
         m_normals[m_mesh.corner_vertex[c]] += a;
+        areas[m_mesh.corner_vertex[c]] += area;
+      }
     }
-    for(Vector_3& n : m_normals)
+    for(std::size_t v = 0; v < m_normals.size(); ++v)
     {
-      const double length = n.norm();
-      if(length > 0)
-        n /= length;
+      // where faces cancel out, as on a rim folded flat, rounding has no say in where outside is
+      const double length = m_normals[v].norm(), rounding = 1e-14 * areas[v];
+      if(length > rounding)
+        m_normals[v] /= length;
+      else
+        m_normals[v].setZero();
     }
   }
 

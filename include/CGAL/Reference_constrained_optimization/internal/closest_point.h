@@ -44,9 +44,25 @@ closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, con
   // triangle; one thinner still is no more than its sides.
   const Vector_3 u = b - a, v = c - a, w = p - a;
   const Vector_3 n = u.cross(v);
-  const double det = n.squaredNorm();
-  if(!(det > 1e-16 * u.squaredNorm() * v.squaredNorm()))
-    return on_sides();
+  const double det = n.squaredNorm(), uu = u.squaredNorm(), vv = v.squaredNorm();
+  if(!(det > 1e-8 * uu * vv))
+  {
+    // seen from the tip of a needle digits are lost, too: from the vertex that is opposite to the
+    // longest side they are not
+    const double opposite = (c - b).squaredNorm();
+    if(uu > opposite && uu >= vv)
+    {
+      const Vector_3 k = closest_barycentric(p, c, a, b);
+      return Vector_3(k(1), k(2), k(0));
+    }
+    if(vv > opposite)
+    {
+      const Vector_3 k = closest_barycentric(p, b, c, a);
+      return Vector_3(k(2), k(0), k(1));
+    }
+    if(!(det > 1e-16 * uu * vv))
+      return on_sides();
+  }
   const double y = w.cross(v).dot(n) / det, z = u.cross(w).dot(n) / det;
   if(y > 0 && z > 0 && y + z < 1)
     return Vector_3(1 - y - z, y, z);

@@ -37,11 +37,11 @@ std::vector<std::array<int, 2>> line_neighbours(const Line_edges& edges,
   for(int v = 0; v < number_of_vertices; ++v)
   {
     std::array<int, 2>& next_to = neighbours[v];
-    const bool goes_on = count[v] == 2 && !stays(v) &&
-                         (position(v) - position(next_to[0]))
-                             .normalized()
-                             .dot((position(next_to[1]) - position(v)).normalized()) >
-                           cosine_of_sharp_turn;
+    const bool goes_on =
+      count[v] == 2 && !stays(v) &&
+      (position(v) - position(next_to[0]))
+          .normalized()
+          .dot((position(next_to[1]) - position(v)).normalized()) > cosine_of_sharp_turn;
     if(!goes_on)
       next_to = {{-1, -1}};
   }

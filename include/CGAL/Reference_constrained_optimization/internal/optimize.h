@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_range.h>
+#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
@@ -87,6 +88,8 @@ void optimize(const FaceRange& range,
     is_own ? Mesh_copy() : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
   const Mesh_copy& reference_copy = is_own ? copy : other;
   Reference_surface surface(reference_copy);
+  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return copy.points[v]; }))
+    throw Invalid_input("mesh: every face has zero area");
   check_location_map(surface, np);
   interruption.check();
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
@@ -100,6 +103,9 @@ void optimize(const FaceRange& range,
   constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption);
+  // nothing of R would be closest to such a mesh
+  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
+    throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
   if(loop_parameters.relax_constraints)
     Sliding_vertices(state, constraints,
                      read_reference_lines(reference, np_reference, reference_copy.mesh, surface),

@@ -1,0 +1,239 @@
+#ifndef RCO_BENCHMARK_CHECKED_RUN_H
+#define RCO_BENCHMARK_CHECKED_RUN_H
+
+// One call of the package, with everything checked that it promises.
+
+#include "Locations.h"
+#include "Monotonicity_visitor.h"
+#include "meshes.h"
+#include "outcome.h"
+#include "promises.h"
+
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures.h>
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <new>
+#include <string>
+#include <vector>
+
+struct Run_figures
+{
+  std::size_t number_of_faces = 0, number_of_free_vertices = 0;
+  double angle_minimum_in = 0, angle_mean_in = 0; // smallest angles of the faces
+  double angle_minimum_out = 0, angle_mean_out = 0;
+  double seconds = 0;
+};
+
+struct Run_settings
+{
+  bool on_surface = true, finishing = true, relax_constraints = false;
+  unsigned int seed = 0;
+};
+
+typedef Mesh::Property_map<Mesh::Vertex_index, bool> Vertex_map;
+
+inline bool same_bits(const Mesh& a, const Mesh& b)
+{
+  for(const Mesh::Vertex_index v : a.vertices())
+    for(int i = 0; i < 3; ++i)
+    {
+      const double x = a.point(v)[i], y = b.point(v)[i];
+      if(std::memcmp(&x, &y, sizeof x) != 0)
+        return false;
+    }
+  return true;
+}
+
+// vertices, half-edges and faces are in the same places
+inline bool same_connectivity(const Mesh& a, const Mesh& b)
+{
+  if(a.number_of_vertices() != b.number_of_vertices() ||
+     a.number_of_halfedges() != b.number_of_halfedges() ||
+     a.number_of_faces() != b.number_of_faces())
+    return false;
+  for(const Mesh::Halfedge_index h : a.halfedges())
+    if(a.target(h) != b.target(h) || a.next(h) != b.next(h) || a.face(h) != b.face(h))
+      return false;
+  return true;
+}
+
+inline CGAL::Reference_constrained_optimization::Result
+call(Mesh& mesh,
+     const Mesh* reference, // none: the mesh itself
+     const Vertex_map& is_constrained,
+     const Locations::Map& locations,
+     const Run_settings& s,
+     unsigned int iterations,
+     Monotonicity_visitor& visitor)
+{
+  return CGAL::reference_constrained_optimize(
+    mesh, reference ? *reference : mesh,
+    CGAL::Reference_constrained_optimization::Minimum_angle_energy(),
+    CGAL::parameters::use_on_surface_steps(s.on_surface)
+      .use_finishing_stage(s.finishing)
+      .vertex_location_map(locations)
+      .random_seed(s.seed)
+      .number_of_iterations(iterations)
+      .vertex_is_constrained_map(is_constrained)
+      .relax_constraints(s.relax_constraints)
+      .visitor(std::ref(visitor)));
+}
+
+// a mesh as the package leaves it, and where it says that the vertices lie
+struct Located
+{
+  const Mesh& mesh;
+  const Locations& locations;
+};
+
+// What the result breaks. `placed` is the input with its free vertices put onto the reference: that is
+// what must not become worse.
+inline std::string broken_promises(const Mesh& input,
+                                   const Located& placed,
+                                   const Located& output,
+                                   const Mesh& reference,
+                                   const std::vector<char>& is_fixed,
+                                   const CGAL::Reference_constrained_optimization::Result& r,
+                                   std::size_t monotonicity_violations)
+{
+  namespace RCO = CGAL::Reference_constrained_optimization;
+  Broken_promises broken;
+  broken.add_if(!same_connectivity(input, output.mesh), "connectivity changed");
+  std::size_t bad = 0, moved = 0;
+  for(const Mesh::Vertex_index v : input.vertices())
+  {
+    const Kernel::Point_3& p = output.mesh.point(v);
+    bad += !(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
+    moved += is_fixed[v] && input.point(v) != p;
+  }
+  broken.add_if(bad > 0, std::to_string(bad) + " vertices without finite coordinates");
+  if(bad > 0)
+    return broken.text();
+  broken.add_if(moved > 0, std::to_string(moved) + " vertices moved that are fixed on input");
+  broken.add_if(!std::isfinite(r.initial_energy) || !std::isfinite(r.final_energy),
+                "energy not finite");
+  const std::size_t defects_in = r.initial_number_of_flips + r.initial_number_of_fold_edges;
+  const std::size_t defects_out = r.number_of_flips + r.number_of_fold_edges;
+  broken.add_if(defects_out > defects_in, "reported flips and folds rose from " +
+                                            std::to_string(defects_in) + " to " +
+                                            std::to_string(defects_out));
+  broken.add_if(defects_out == defects_in && r.final_energy > r.initial_energy,
+                "energy rose from " + in_short(r.initial_energy) + " by " +
+                  in_short(r.final_energy - r.initial_energy));
+  // a vertex of a border that slides may not find a border of the reference
+  const auto may_move = [&](Mesh::Vertex_index v) { return !is_fixed[v]; };
+  const auto is_on = [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_border(v); };
+  Defects_in_and_out defects;
+  if(CGAL::is_triangle_mesh(reference))
+  {
+    defects.in = placed.locations.orientation_defects(true);
+    defects.out = output.locations.orientation_defects(false);
+    double largest = 0;
+    for(const Mesh::Vertex_index v : reference.vertices())
+      for(int i = 0; i < 3; ++i)
+        largest = (std::max)(largest, std::abs(reference.point(v)[i]));
+    const double distance = output.locations.largest_distance(is_on);
+    broken.add_if(distance > 8 * std::numeric_limits<double>::epsilon() * largest,
+                  "a vertex is " + in_short(distance) + " away from its location");
+  }
+  else // there are no locations
+    defects = {RCO::orientation_defects(placed.mesh, reference),
+               RCO::orientation_defects(output.mesh, reference)};
+  broken.check_run(placed.mesh, output.mesh, reference, defects, monotonicity_violations, may_move,
+                   is_on);
+
+  const double before = RCO::angle_statistics(placed.mesh).minimum;
+  const double after = RCO::angle_statistics(output.mesh).minimum;
+  const double rounding = 1e-6; // of a small angle that is found by its cosine
+  broken.add_if(defects_out == defects_in && after < before - rounding,
+                "minimum angle fell from " + in_short(before) + " degrees by " +
+                  in_short(before - after));
+  return broken.text();
+}
+
+inline Outcome checked_run(const Mesh& input,
+                           const Mesh* reference,
+                           const std::function<bool(std::size_t)>& is_constrained,
+                           const Run_settings& settings,
+                           Run_figures& figures,
+                           std::string& text)
+{
+  namespace RCO = CGAL::Reference_constrained_optimization;
+  Mesh mesh = input, placed = input;
+  const auto constraints = [&](Mesh& m) {
+    const Vertex_map map = m.add_property_map<Mesh::Vertex_index, bool>("is_constrained").first;
+    if(is_constrained)
+      for(const Mesh::Vertex_index v : m.vertices())
+        map[v] = is_constrained(std::size_t(v));
+    return map;
+  };
+  const Vertex_map map = constraints(mesh), placed_map = constraints(placed);
+  const Locations locations(mesh, reference ? *reference : input),
+    placed_locations(placed, reference ? *reference : input);
+  figures.number_of_faces = mesh.number_of_faces();
+  try
+  {
+    Monotonicity_visitor visitor;
+    RCO::Result r;
+    try
+    {
+      r = call(mesh, reference, map, locations.map(), settings, 30, visitor);
+    }
+    catch(const RCO::Invalid_input& e)
+    {
+      text = e.what();
+      if(same_bits(mesh, input))
+        return Outcome::refused;
+      text = "mesh touched in spite of the refusal: " + text;
+      return Outcome::broken_promise;
+    }
+    figures.seconds = r.running_time;
+    figures.number_of_free_vertices = r.number_of_free_vertices;
+    Monotonicity_visitor unused;
+    call(placed, reference, placed_map, placed_locations.map(), settings, 0, unused);
+
+    // borders slide if constraints are relaxed: then only what the map constrains must stay
+    std::vector<char> is_fixed(input.number_of_vertices(), 0);
+    for(const Mesh::Vertex_index v : input.vertices())
+      is_fixed[v] = map[v] || input.is_isolated(v);
+    for(const Mesh::Edge_index e : input.edges())
+      if(input.is_border(e) && !settings.relax_constraints)
+        is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
+    text = broken_promises(input, {placed, placed_locations}, {mesh, locations},
+                           reference ? *reference : input, is_fixed, r, visitor.violations);
+    const RCO::Angle_statistics in = RCO::angle_statistics(placed),
+                                out = RCO::angle_statistics(mesh);
+    figures.angle_minimum_in = in.minimum;
+    figures.angle_mean_in = in.mean;
+    figures.angle_minimum_out = out.minimum;
+    figures.angle_mean_out = out.mean;
+    if(!text.empty())
+      return Outcome::broken_promise;
+    const bool repairs = r.number_of_flips + r.number_of_fold_edges <
+                         r.initial_number_of_flips + r.initial_number_of_fold_edges;
+    // less is rounding
+    const bool gains = r.final_energy < r.initial_energy * (1 - 1e-9);
+    return repairs || gains ? Outcome::improved : Outcome::nothing_to_do;
+  }
+  catch(const std::bad_alloc&)
+  {
+    text = "no memory left";
+    return Outcome::out_of_memory;
+  }
+  catch(const std::exception& e)
+  {
+    text = e.what();
+    return Outcome::exception;
+  }
+}
+
+#endif // RCO_BENCHMARK_CHECKED_RUN_H
