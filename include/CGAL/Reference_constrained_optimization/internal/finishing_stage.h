@@ -90,10 +90,13 @@ public:
       if(!can_rise(int(lowest)))
         break;
       const double minimum = m_minimum, mean_before = mean();
-      const double target = (std::min)(minimum + step, equilateral);
-      const double lagging = minimum + 0.2 * step, enough = minimum + 0.3 * step;
+      // far beyond what the sharpest can reach the barrier would only harm those around it
+      const double feasible = bound(int(lowest)) + 0.2;
+      const double target = (std::min)({minimum + step, feasible, equilateral});
+      const double ahead = target - minimum;
+      const double lagging = minimum + 0.2 * ahead, enough = minimum + 0.3 * ahead;
       // a little is lent to the neighbours of the sharpest, which would be in the way otherwise
-      const double lent = (std::max)(first_minimum, minimum - 0.5 * step);
+      const double lent = (std::max)(first_minimum, minimum - 0.5 * ahead);
       const Goal goal{target, cosine(lent), cosine(lagging)};
       goes_on = visit_below(target, goal, false, visit);
       if(goes_on && m_minimum < lagging)
@@ -115,10 +118,14 @@ public:
           m_touched.clear();
           best = m_minimum;
         }
-        if(m_minimum > minimum + 0.8 * step)
+        if(m_minimum > minimum + 0.8 * ahead)
           step = (std::min)(largest_step, 2 * step);
-        else if(m_minimum < enough && !widen(enough))
-          step *= 0.25;
+        else if(m_minimum < enough)
+        {
+          const bool widens = widen(enough);
+          if(!widens || m_minimum <= minimum)
+            step = (widens ? 0.5 : 0.25) * ahead;
+        }
       }
     }
     if(m_minimum < best)
@@ -227,10 +234,11 @@ private:
   // A vertex bounds the smallest angle of the faces around it, as long as the sum of the angles there
   // stays: the least of these is their mean at most, and the largest, the mean at least, leaves no more
   // for the other two of its face.
-  bool can_rise(int f) const
+  double bound(int f) const
   {
     const Indexed_mesh& mesh = m_state.mesh;
     const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
+    double least = 60;
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     {
       const int v = mesh.corner_vertex[c];
@@ -244,11 +252,12 @@ private:
         sum += degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
       }
       const double mean = sum / (end - begin);
-      if(m_angles[f] > (std::min)(mean, 90 - 0.5 * mean) - negligible)
-        return false;
+      least = (std::min)({least, mean, 90 - 0.5 * mean});
     }
-    return true;
+    return least;
   }
+
+  bool can_rise(int f) const { return m_angles[f] <= bound(f) - negligible; }
 
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
   double mean() const { return m_sum / m_number_of_faces; }
