@@ -263,7 +263,7 @@ class Option_reader
 public:
   explicit Option_reader(Options& options)
     : m_options(options),
-      m_own(std::string("Of rco ") + name(options.application), 100, 50)
+      m_own(std::string("Options of rco ") + name(options.application), 100, 50)
   {
     describe_own();
     describe_common();
