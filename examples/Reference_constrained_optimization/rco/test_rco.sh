@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Tests the command-line program: its three applications, exit codes, formats and reports.
 #
-#   test_rco.sh <rco> <cmake> <folder to work in>
+#   test_rco.sh <rco> <cmake> <README.md> <folder to work in>
 set -uo pipefail
 
 rco=$1
 cmake=$2
+readme=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-rm -rf "$3" && mkdir -p "$3" && cd "$3" || exit 1
+rm -rf "$4" && mkdir -p "$4" && cd "$4" || exit 1
 
 failures=0
 fail() {
@@ -232,6 +233,30 @@ printf 'OFF\n4 2 0\n5 0 0\n6 0 0\n6 1 0\n5 1 0\n3 0 1 2\n3 0 2 3\n' >aside.off
 expect 5 angle aside.off --reference triangles.off --json
 json_is outcome 'refused input'
 grep -q vertex err || fail "no vertex is named"
+
+# ---- the lines of README and of the help, on meshes of ours under those names
+mkdir -p lines && cd lines || exit 1
+cp ../triangles.off elephant.off
+expect 0 angle elephant.off -o part.stl --number-of-iterations 1
+expect 0 angle elephant.off -o scan.ply --number-of-iterations 1
+expect 11 quad ../quads.off -o quads.obj --maximum-running-time 1e-9 # as it is
+cp ../flat.off cat.off
+cp ../reference.off horse.off
+cp ../landmarks.txt cat_horse.txt
+for command in angle quad map; do
+  "$rco" "$command" --help | grep -E '^  rco .*\.'
+done | sed 's/^  rco/rco/' >lines.txt
+[ "$(wc -l <lines.txt)" -ge 8 ] || fail "too few examples in the help"
+grep '^rco ' "$readme" >>lines.txt
+[ "$(grep -c '^rco ' "$readme")" -ge 3 ] || fail "too few lines in README"
+# those that make a file come before those that read it, and leave nothing to do then
+while read -r _ words; do
+  # shellcheck disable=SC2086
+  "$rco" $words >out 2>err </dev/null
+  code=$?
+  [ "$code" = 0 ] || [ "$code" = 10 ] || fail "rco $words: exit code $code: $(cat err)"
+done <lines.txt
+cd .. || exit 1
 
 # ---- Ctrl-C: what was reached is saved
 make_grid 220 3 0.4 0.3 >large.off
