@@ -223,12 +223,22 @@ expect 4 angle triangles.off -o result.vtk
 expect 4 angle triangles.off -o result
 mkdir -p folder.off
 expect 4 angle triangles.off -o folder.off
+if [ -e /dev/full ]; then
+  for format in off obj ply stl; do
+    ln -s /dev/full "full.$format"
+    expect 4 angle triangles.off -o "full.$format"
+  done
+fi
 
 # ---- input that is read, but refused
 printf 'OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n' >fan.off
 expect 5 angle fan.off
 printf 'v 0 0 0\nv 1 0 0\nv 1e300 1 0\nf 1 2 3\n' >far.obj
 expect 5 angle far.obj
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
+"$rco" angle nan.off >out 2>err
+code=$? # whether the number is read depends on the standard library
+[ "$code" = 3 ] || [ "$code" = 5 ] || fail "exit code $code for a coordinate that is no number"
 printf 'OFF\n4 2 0\n5 0 0\n6 0 0\n6 1 0\n5 1 0\n3 0 1 2\n3 0 2 3\n' >aside.off
 expect 5 angle aside.off --reference triangles.off --json
 json_is outcome 'refused input'
