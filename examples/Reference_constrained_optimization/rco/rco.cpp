@@ -1,0 +1,147 @@
+// The package as a program: `rco angle`, `rco quad` and `rco map`; `rco --help` tells more.
+
+#include "interruption.h"
+#include "landmarks.h"
+#include "measures.h"
+#include "mesh.h"
+#include "mesh_files.h"
+#include "optimization.h"
+#include "options.h"
+#include "outcome.h"
+#include "report.h"
+
+#include <CGAL/Reference_constrained_optimization/Invalid_input.h>
+#include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <iostream>
+#include <string>
+
+namespace {
+
+// of edges and of the shorter diagonals of quads, as in the library
+double mean_edge_length(const Mesh& mesh)
+{
+  double sum = 0;
+  std::size_t number = mesh.number_of_edges();
+  const auto distance = [&](Mesh::Vertex_index v, Mesh::Vertex_index w) {
+    return std::sqrt(CGAL::squared_distance(mesh.point(v), mesh.point(w)));
+  };
+  for(const Mesh::Edge_index e : mesh.edges())
+    sum += distance(mesh.vertex(e, 0), mesh.vertex(e, 1));
+  for(const Mesh::Face_index f : mesh.faces())
+    if(mesh.degree(f) == 4)
+    {
+      const Mesh::Halfedge_index h = mesh.halfedge(f), opposite = mesh.next(mesh.next(h));
+      sum += (std::min)(distance(mesh.source(h), mesh.source(opposite)),
+                        distance(mesh.target(h), mesh.target(opposite)));
+      ++number;
+    }
+  return sum / double(number);
+}
+
+double length_of(const Drift_bound& bound, const Mesh& reference)
+{
+  return bound.is_in_mean_edges ? bound.value * mean_edge_length(reference) : bound.value;
+}
+
+// where a map starts
+Mesh read_initial_mesh(const Options& options, const Mesh& source, const Mesh& reference)
+{
+  if(!options.initial.empty())
+    return read_mesh(options.initial);
+  if(options.landmarks.empty())
+    return source;
+  Mesh initial;
+  RCO::compatible_initial_mesh(source, reference,
+                               read_landmarks(options.landmarks, source, reference), initial,
+                               CGAL::parameters::random_seed(options.random_seed));
+  return initial;
+}
+
+Outcome outcome_of(const RCO::Result& result)
+{
+  if(result.status == RCO::Status::interrupted)
+    return Outcome::interrupted;
+  if(result.number_of_accepted_patches > 0)
+    return Outcome::improved;
+  return result.status == RCO::Status::time_limit ? Outcome::out_of_time : Outcome::nothing_to_do;
+}
+
+Outcome run(const Options& options)
+{
+  const Mesh input = read_mesh(options.input);
+  const bool is_own_reference = options.reference.empty();
+  const Mesh reference = is_own_reference ? input : read_mesh(options.reference);
+  const bool is_map = options.application == Application::map;
+  const Mesh initial = is_map ? read_initial_mesh(options, input, reference) : input;
+  if(!options.output.empty())
+    check_output(options.output, initial);
+
+  Mesh mesh = initial;
+  Report report;
+  report.number_of_vertices = mesh.number_of_vertices();
+  report.number_of_faces = mesh.number_of_faces();
+  {
+    const Interruptible interruptible;
+    report.result =
+      optimize(mesh, reference, input, length_of(options.drift_bound, reference), options);
+    if(!options.output.empty())
+      write_mesh(options.output, mesh);
+  }
+  const Outcome outcome = outcome_of(report.result);
+  if(options.is_quiet && !options.prints_json)
+    return outcome;
+  report.before =
+    measure(initial, is_own_reference ? nullptr : &reference, input, options.application);
+  report.after = measure(mesh, &reference, input, options.application);
+  if(options.prints_json)
+    print_json(std::cout, options, report, outcome);
+  else
+    print_table(std::cout, options, report, outcome);
+  return outcome;
+}
+
+// what could not be read is not known to ask for it
+bool wants_json(int argc, char* argv[])
+{
+  return std::find(argv, argv + argc, std::string("--json")) != argv + argc;
+}
+
+int fail(Outcome outcome, const std::string& message, bool prints_json)
+{
+  std::cerr << "rco: " << message << std::endl;
+  if(prints_json)
+    print_json(std::cout, message, outcome);
+  return int(outcome);
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  const bool prints_json = wants_json(argc, argv);
+  try
+  {
+    Options options;
+    if(!read_options(argc, argv, options))
+      return int(Outcome::improved);
+    if(options.threads > 1 && !can_use_threads())
+      throw Failure(Outcome::bad_usage, "--threads: this program was built without TBB");
+    return int(run(options));
+  }
+  catch(const Failure& e)
+  {
+    return fail(e.outcome(), e.what(), prints_json);
+  }
+  catch(const RCO::Invalid_input& e)
+  {
+    return fail(Outcome::refused_input, e.what(), prints_json);
+  }
+  catch(const std::exception& e)
+  {
+    return fail(Outcome::failure, e.what(), prints_json);
+  }
+}

@@ -1,0 +1,136 @@
+// What a run prints: a table for people, or one JSON object for programs.
+
+#ifndef RCO_PROGRAM_REPORT_H
+#define RCO_PROGRAM_REPORT_H
+
+#include "measures.h"
+#include "options.h"
+#include "outcome.h"
+
+#include <CGAL/Reference_constrained_optimization/Result.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <vector>
+
+struct Report
+{
+  std::size_t number_of_vertices = 0, number_of_faces = 0;
+  std::vector<Measure> before, after;
+  RCO::Result result;
+};
+
+inline const char* name(RCO::Status status)
+{
+  switch(status)
+  {
+  case RCO::Status::converged:
+    return "converged";
+  case RCO::Status::iteration_limit:
+    return "iteration limit";
+  case RCO::Status::time_limit:
+    return "time limit";
+  case RCO::Status::interrupted:
+    return "interrupted";
+  case RCO::Status::nothing_to_do:
+    return "nothing to do";
+  }
+  return "";
+}
+
+inline std::string json_text(const std::string& text)
+{
+  std::string quoted = "\"";
+  for(const char c : text)
+  {
+    if(c == '"' || c == '\\')
+      quoted += '\\';
+    if((unsigned char)c >= 0x20)
+      quoted += c;
+    else
+    {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", unsigned(c));
+      quoted += code;
+    }
+  }
+  return quoted + '"';
+}
+
+// JSON knows no infinity
+inline std::string json_number(double x)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", x);
+  return std::isfinite(x) ? text : "null";
+}
+
+inline std::string json_object(const std::vector<Measure>& measures)
+{
+  std::string object;
+  for(const Measure& m : measures)
+    object += (object.empty() ? "" : ", ") + json_text(m.key) + ": " + json_number(m.value);
+  return "{" + object + "}";
+}
+
+inline std::string json_outcome(Outcome outcome)
+{
+  return "  \"outcome\": " + json_text(name(outcome)) +
+         ",\n  \"exit_code\": " + std::to_string(int(outcome));
+}
+
+inline void
+print_json(std::ostream& out, const Options& options, const Report& report, Outcome outcome)
+{
+  const RCO::Result& r = report.result;
+  const auto file = [](const std::string& name) { return name.empty() ? "null" : json_text(name); };
+  out << "{\n  \"command\": " << json_text(name(options.application))
+      << ",\n  \"input\": " << json_text(options.input)
+      << ",\n  \"reference\": " << file(options.reference)
+      << ",\n  \"output\": " << file(options.output) << ",\n"
+      << json_outcome(outcome) << ",\n  \"status\": " << json_text(name(r.status))
+      << ",\n  \"number_of_vertices\": " << report.number_of_vertices
+      << ",\n  \"number_of_faces\": " << report.number_of_faces
+      << ",\n  \"number_of_free_vertices\": " << r.number_of_free_vertices
+      << ",\n  \"before\": " << json_object(report.before)
+      << ",\n  \"after\": " << json_object(report.after)
+      << ",\n  \"initial_energy\": " << json_number(r.initial_energy)
+      << ",\n  \"final_energy\": " << json_number(r.final_energy)
+      << ",\n  \"drift_bound\": " << json_number(r.drift_bound)
+      << ",\n  \"number_of_iterations\": " << r.number_of_iterations
+      << ",\n  \"number_of_patches\": " << r.number_of_patches
+      << ",\n  \"running_time\": " << json_number(r.running_time) << "\n}" << std::endl;
+}
+
+inline void print_json(std::ostream& out, const std::string& error, Outcome outcome)
+{
+  out << "{\n"
+      << json_outcome(outcome) << ",\n  \"error\": " << json_text(error) << "\n}" << std::endl;
+}
+
+inline void
+print_table(std::ostream& out, const Options& options, const Report& report, Outcome outcome)
+{
+  const int label = 50, column = 12;
+  const RCO::Result& r = report.result;
+  out << options.input << ": " << report.number_of_vertices << " vertices, "
+      << report.number_of_faces << " faces\n"
+      << std::fixed << std::setw(label + column) << "before" << std::setw(column) << "after\n";
+  for(std::size_t i = 0; i < report.before.size(); ++i)
+  {
+    const Measure &a = report.before[i], &b = report.after[i];
+    out << std::setprecision(a.digits) << std::left << std::setw(label) << a.label << std::right
+        << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
+  }
+  out << std::setprecision(2) << name(outcome) << " (" << name(r.status)
+      << "): " << r.number_of_iterations << " iterations, " << r.running_time << " seconds";
+  if(!options.output.empty())
+    out << "; result: " << options.output;
+  out << std::endl;
+}
+
+#endif // RCO_PROGRAM_REPORT_H
