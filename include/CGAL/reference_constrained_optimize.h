@@ -262,8 +262,15 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
  * \tparam FaceRange a model of `ConstRange` with the face descriptor of `PolygonMesh` as value type
  *
  * \param face_range the faces to be optimized; one that is named twice counts once.
+ * \param mesh the mesh, of which the faces are a part
+ * \param reference as for a whole mesh
+ * \param energy as for a whole mesh
+ * \param np as for a whole mesh
+ * \param np_reference as for a whole mesh
  *
- * All other parameters, the result and the exceptions are those of the function for a whole mesh.
+ * \return what was done and reached, see above.
+ *
+ * \throws Reference_constrained_optimization::Invalid_input as for a whole mesh.
  */
 template <
   typename ConcurrencyTag = CGAL::Sequential_tag,
