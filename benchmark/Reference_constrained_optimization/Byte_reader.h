@@ -50,7 +50,7 @@ public:
                                              1e-9,
                                              -1e-16,
                                              1e-61,
-                                             1e-160}}; 
+                                             1e-160}};
     const unsigned kind = byte();
     if(kind < 200)
       return (kind < 100 ? int(kind) : 99 - int(kind)) / 8.;

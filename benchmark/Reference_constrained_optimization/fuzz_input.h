@@ -7,6 +7,7 @@
 #include "Byte_reader.h"
 #include "Soup.h"
 #include "nasty_inputs.h"
+#include "variants.h"
 
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 
@@ -62,7 +63,8 @@ public:
     in.patch_size = m_bytes.flag() ? int(m_bytes.byte()) : 0;
     in.developability_threshold = m_bytes.flag() ? std::abs(m_bytes.number()) : 0.25;
     in.energy_tolerance = m_bytes.flag() ? std::abs(m_bytes.number()) : 5e-3;
-    in.drift_bound = m_bytes.flag() ? m_bytes.number() : std::numeric_limits<double>::infinity();
+    const unsigned drift = m_bytes.below(4);
+    in.drift_bound = drift == 3 ? m_bytes.number() : std::numeric_limits<double>::infinity();
     in.stop_after = m_bytes.flag() ? 1 + 4 * m_bytes.byte() : 0;
     in.vertices = pattern();
     in.edges = pattern();
@@ -90,6 +92,8 @@ public:
     in.mesh = built(in_other_units(mesh, size));
     in.reference = built(in_other_units(reference, size));
     in.source = built(in_other_units(source, m_bytes.below(16)));
+    if(drift < 2) // as by default
+      in.drift_bound = 0.25 * mean_edge(in.reference);
     return in;
   }
 
@@ -108,16 +112,16 @@ private:
   {
     const unsigned kind = m_bytes.below(12);
     const int a = 1 + int((m_bytes.byte() + 3) % 5), b = 1 + int((m_bytes.byte() + 3) % 5);
-    Soup s = kind == 0   ? plane(a, b)
-             : kind == 1 ? sphere(a % 2)
-             : kind == 2 ? torus(a + 2, 3 + b % 3, 1, 0.25 * b)
-             : kind == 3 ? cylinder(a + 2, b)
-             : kind == 4 ? tetrahedron()
-             : kind == 5 ? fan(a + 2, 0.1 * b, 0, b - 3)
-             : kind == 6 ? pillow(a)
-             : kind == 7 ? moebius(a + 3, (b + 1) / 2, b % 2 == 0)
-             : kind == 8 ? joined(sphere(a % 2), shifted(scaled(sphere(0), .1, .1, .1), b, 0, 0))
-             : kind == 9 ? with_spikes(plane(1 + a / 2, 1 + b / 2), 2, 0.25 * (b - 3))
+    Soup s = kind == 0    ? plane(a, b)
+             : kind == 1  ? sphere(a % 2)
+             : kind == 2  ? torus(a + 2, 3 + b % 3, 1, 0.25 * b)
+             : kind == 3  ? cylinder(a + 2, b)
+             : kind == 4  ? tetrahedron()
+             : kind == 5  ? fan(a + 2, 0.1 * b, 0, b - 3)
+             : kind == 6  ? pillow(a)
+             : kind == 7  ? moebius(a + 3, (b + 1) / 2, b % 2 == 0)
+             : kind == 8  ? joined(sphere(a % 2), shifted(scaled(sphere(0), .1, .1, .1), b, 0, 0))
+             : kind == 9  ? with_spikes(plane(1 + a / 2, 1 + b / 2), 2, 0.25 * (b - 3))
              : kind == 10 ? shuffled(sphere(1), unsigned(a + 5 * b))
                           : Soup();
     if(m_bytes.flag())
@@ -237,15 +241,24 @@ private:
   {
     switch(kind)
     {
-    case 8: return scaled(s, 1e6, 1e6, 1e6);
-    case 9: return scaled(s, 1e-6, 1e-6, 1e-6);
-    case 10: return scaled(s, 1e55, 1e55, 1e55);
-    case 11: return scaled(s, 1e-55, 1e-55, 1e-55);
-    case 12: return scaled(s, 1, 1, 0);
-    case 13: return scaled(s, 1e5, 1, 1);
-    case 14: return shifted(s, 1e6, -2e6, 7e5);
-    case 15: return scaled(s, 1, 1, 1e-9);
-    default: return s;
+    case 8:
+      return scaled(s, 1e6, 1e6, 1e6);
+    case 9:
+      return scaled(s, 1e-6, 1e-6, 1e-6);
+    case 10:
+      return scaled(s, 1e55, 1e55, 1e55);
+    case 11:
+      return scaled(s, 1e-55, 1e-55, 1e-55);
+    case 12:
+      return scaled(s, 1, 1, 0);
+    case 13:
+      return scaled(s, 1e5, 1, 1);
+    case 14:
+      return shifted(s, 1e6, -2e6, 7e5);
+    case 15:
+      return scaled(s, 1, 1, 1e-9);
+    default:
+      return s;
     }
   }
 

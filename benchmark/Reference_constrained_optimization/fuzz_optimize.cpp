@@ -1,5 +1,6 @@
 // A fuzz target: bytes become a small mesh and parameters, the package optimizes it, and what it
-// promises is verified.
+// promises is verified. With RCO_FUZZ_VERBOSE in the environment an input and what became of it are
+// printed, too: for the replay of a finding.
 
 #include "Locations.h"
 #include "Monotonicity_visitor.h"
@@ -80,8 +81,11 @@ std::vector<Mesh::Face_index> face_range(const Fuzz_input& in, const Mesh& mesh)
 }
 
 template <typename Energy>
-void optimize(
-  Fuzz_input& in, const Edge_map& reference_lines, const Energy& energy, unsigned iterations, Run& r)
+void optimize(Fuzz_input& in,
+              const Edge_map& reference_lines,
+              const Energy& energy,
+              unsigned iterations,
+              Run& r)
 {
   const auto np = CGAL::parameters::use_on_surface_steps(in.on_surface)
                     .use_finishing_stage(in.finishing)
@@ -98,8 +102,8 @@ void optimize(
                     .visitor(std::ref(r.visitor));
   const Mesh& reference = in.has_reference ? in.reference : r.mesh;
   if(in.faces.is_used)
-    r.result = CGAL::reference_constrained_optimize(face_range(in, r.mesh), r.mesh, reference,
-                                                    energy, np);
+    r.result =
+      CGAL::reference_constrained_optimize(face_range(in, r.mesh), r.mesh, reference, energy, np);
   else if(in.reference_edges.is_used && in.has_reference)
     r.result = CGAL::reference_constrained_optimize(
       r.mesh, reference, energy, np, CGAL::parameters::edge_is_constrained_map(reference_lines));
@@ -141,6 +145,51 @@ std::vector<Vertex_freedom> freedom(const Fuzz_input& in, const Run& r)
   return freedom;
 }
 
+bool is_verbose() { return std::getenv("RCO_FUZZ_VERBOSE") != nullptr; }
+
+void print(const Fuzz_input& in)
+{
+  if(!is_verbose())
+    return;
+  std::cerr.precision(17);
+  std::cerr << "energy " << int(in.energy) << ", on surface " << in.on_surface << ", finishing "
+            << in.finishing << ", relaxed " << in.relax_constraints << ", iterations "
+            << in.iterations << ", seed " << in.seed << ", patch size " << in.patch_size
+            << ", developability " << in.developability_threshold << ", tolerance "
+            << in.energy_tolerance << ", drift bound " << in.drift_bound << ", stop after "
+            << in.stop_after;
+  const auto list = [&](const std::string& name, const Fuzz_pattern& pattern, std::size_t n) {
+    if(!pattern.is_used)
+      return;
+    std::cerr << "\n" << name << ":";
+    for(std::size_t i = 0; i < n; ++i)
+      if(pattern(i))
+        std::cerr << " " << i;
+  };
+  list("constrained vertices", in.vertices, in.mesh.number_of_vertices());
+  list("constrained edges", in.edges, in.mesh.number_of_edges());
+  list("edges of the reference", in.reference_edges, in.reference.number_of_edges());
+  list("range of faces", in.faces, in.mesh.number_of_faces());
+  std::cerr << "\nmesh ";
+  CGAL::IO::write_OFF(std::cerr, in.mesh, CGAL::parameters::stream_precision(17));
+  if(in.has_reference)
+  {
+    std::cerr << "reference ";
+    CGAL::IO::write_OFF(std::cerr, in.reference, CGAL::parameters::stream_precision(17));
+  }
+  if(in.energy == Fuzz_energy::compatible_remeshing)
+  {
+    std::cerr << "source ";
+    CGAL::IO::write_OFF(std::cerr, in.source, CGAL::parameters::stream_precision(17));
+  }
+}
+
+void print(const std::string& text)
+{
+  if(is_verbose())
+    std::cerr << text << std::endl;
+}
+
 // what the package breaks of its promises, in words
 std::string broken_promises(Fuzz_input& in)
 {
@@ -153,9 +202,19 @@ std::string broken_promises(Fuzz_input& in)
   }
   catch(const RCO::Invalid_input& e)
   {
+    print(std::string("refused: ") + e.what());
     return same_bits(run.mesh, in.mesh) ? "" : "mesh touched in spite of: " + std::string(e.what());
   }
-  const bool is_stopped = run.result.status == RCO::Status::interrupted;
+  const RCO::Result& r = run.result;
+  print("status " + std::to_string(int(r.status)) + ", free vertices " +
+        std::to_string(r.number_of_free_vertices) + ", iterations " +
+        std::to_string(r.number_of_iterations) + ", patches " +
+        std::to_string(r.number_of_accepted_patches) + " of " +
+        std::to_string(r.number_of_patches) + ", energy " + std::to_string(r.initial_energy) +
+        " -> " + std::to_string(r.final_energy) + ", defects " +
+        std::to_string(number_of_initial_defects(r)) + " -> " +
+        std::to_string(number_of_defects(r)));
+  const bool is_stopped = r.status == RCO::Status::interrupted;
   if(is_stopped && in.stop_after == 0)
     return "it stopped by itself";
   if(is_stopped && same_bits(run.mesh, in.mesh))
@@ -163,10 +222,10 @@ std::string broken_promises(Fuzz_input& in)
 
   Run placed(in, in.reference);
   optimize(in, reference_lines, 0, placed);
-  std::string text = broken_promises(in.mesh, {placed.mesh, placed.locations},
-                                     {run.mesh, run.locations}, in.reference, freedom(in, run),
-                                     run.result, run.visitor.violations)
-                       .text();
+  std::string text =
+    broken_promises(in.mesh, {placed.mesh, placed.locations}, {run.mesh, run.locations},
+                    in.reference, freedom(in, run), r, run.visitor.violations)
+      .text();
   if(text.empty() && in.twice)
   {
     Run again(in, in.reference);
@@ -183,6 +242,7 @@ std::string broken_promises(Fuzz_input& in)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   Fuzz_input input = Fuzz_decoder(data, size).decode();
+  print(input);
   std::string text;
   try
   {
