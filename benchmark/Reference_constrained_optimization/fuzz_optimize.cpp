@@ -80,26 +80,13 @@ std::vector<Mesh::Face_index> face_range(const Fuzz_input& in, const Mesh& mesh)
   return range;
 }
 
-template <typename Energy>
-void optimize(Fuzz_input& in,
-              const Edge_map& reference_lines,
-              const Energy& energy,
-              unsigned iterations,
-              Run& r)
+template <typename Energy, typename NamedParameters>
+void call(Fuzz_input& in,
+          const Edge_map& reference_lines,
+          const Energy& energy,
+          const NamedParameters& np,
+          Run& r)
 {
-  const auto np = CGAL::parameters::use_on_surface_steps(in.on_surface)
-                    .use_finishing_stage(in.finishing)
-                    .developability_threshold(in.developability_threshold)
-                    .energy_tolerance(in.energy_tolerance)
-                    .drift_bound(in.drift_bound)
-                    .maximum_patch_size(in.patch_size)
-                    .vertex_location_map(r.locations.map())
-                    .random_seed(in.seed)
-                    .number_of_iterations(iterations)
-                    .vertex_is_constrained_map(r.is_constrained)
-                    .edge_is_constrained_map(r.is_line)
-                    .relax_constraints(in.relax_constraints)
-                    .visitor(std::ref(r.visitor));
   const Mesh& reference = in.has_reference ? in.reference : r.mesh;
   if(in.faces.is_used)
     r.result =
@@ -109,6 +96,36 @@ void optimize(Fuzz_input& in,
       r.mesh, reference, energy, np, CGAL::parameters::edge_is_constrained_map(reference_lines));
   else
     r.result = CGAL::reference_constrained_optimize(r.mesh, reference, energy, np);
+}
+
+template <typename Energy>
+void optimize(Fuzz_input& in,
+              const Edge_map& reference_lines,
+              const Energy& energy,
+              unsigned iterations,
+              Run& r)
+{
+  const auto own = CGAL::parameters::use_on_surface_steps(in.on_surface)
+                     .use_finishing_stage(in.finishing)
+                     .developability_threshold(in.developability_threshold)
+                     .energy_tolerance(in.energy_tolerance)
+                     .drift_bound(in.drift_bound)
+                     .maximum_patch_size(in.patch_size);
+  const auto call_with = [&](const auto& np) {
+    call(in, reference_lines, energy,
+         np.random_seed(in.seed)
+           .number_of_iterations(iterations)
+           .vertex_is_constrained_map(r.is_constrained)
+           .edge_is_constrained_map(r.is_line)
+           .relax_constraints(in.relax_constraints)
+           .visitor(std::ref(r.visitor)),
+         r);
+  };
+  // there are no locations on quads
+  if(CGAL::is_triangle_mesh(in.reference))
+    call_with(own.vertex_location_map(r.locations.map()));
+  else
+    call_with(own);
 }
 
 void optimize(Fuzz_input& in, const Edge_map& reference_lines, unsigned iterations, Run& r)
