@@ -88,6 +88,18 @@ call(Mesh& mesh,
       .visitor(std::ref(visitor)));
 }
 
+inline std::size_t
+number_of_initial_defects(const CGAL::Reference_constrained_optimization::Result& r)
+{
+  return r.initial_number_of_flips + r.initial_number_of_fold_edges +
+         r.initial_number_of_nonconvex_quads;
+}
+
+inline std::size_t number_of_defects(const CGAL::Reference_constrained_optimization::Result& r)
+{
+  return r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads;
+}
+
 // a mesh as the package leaves it, and where it says that the vertices lie
 struct Located
 {
@@ -95,15 +107,18 @@ struct Located
   const Locations& locations;
 };
 
-// What the result breaks. `placed` is the input with its free vertices put onto the reference: that is
-// what must not become worse.
-inline std::string broken_promises(const Mesh& input,
-                                   const Located& placed,
-                                   const Located& output,
-                                   const Mesh& reference,
-                                   const std::vector<char>& is_fixed,
-                                   const CGAL::Reference_constrained_optimization::Result& r,
-                                   std::size_t monotonicity_violations)
+// what a vertex may do
+enum class Vertex_freedom : char { fixed, on_reference, on_line };
+
+// What the result breaks, whatever the energy. `placed` is the input with its free vertices put onto
+// the reference: that is what must not become worse.
+inline Broken_promises broken_promises(const Mesh& input,
+                                       const Located& placed,
+                                       const Located& output,
+                                       const Mesh& reference,
+                                       const std::vector<Vertex_freedom>& freedom,
+                                       const CGAL::Reference_constrained_optimization::Result& r,
+                                       std::size_t monotonicity_violations)
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
   Broken_promises broken;
@@ -113,30 +128,33 @@ inline std::string broken_promises(const Mesh& input,
   {
     const Kernel::Point_3& p = output.mesh.point(v);
     bad += !(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
-    moved += is_fixed[v] && input.point(v) != p;
+    moved += freedom[v] == Vertex_freedom::fixed && input.point(v) != p;
   }
   broken.add_if(bad > 0, std::to_string(bad) + " vertices without finite coordinates");
   if(bad > 0)
-    return broken.text();
+    return broken;
   broken.add_if(moved > 0, std::to_string(moved) + " vertices moved that are fixed on input");
   broken.add_if(!std::isfinite(r.initial_energy) || !std::isfinite(r.final_energy),
                 "energy not finite");
-  const std::size_t defects_in = r.initial_number_of_flips + r.initial_number_of_fold_edges;
-  const std::size_t defects_out = r.number_of_flips + r.number_of_fold_edges;
-  broken.add_if(defects_out > defects_in, "reported flips and folds rose from " +
+  const std::size_t defects_in = number_of_initial_defects(r), defects_out = number_of_defects(r);
+  broken.add_if(defects_out > defects_in, "reported defects rose from " +
                                             std::to_string(defects_in) + " to " +
                                             std::to_string(defects_out));
   broken.add_if(defects_out == defects_in && r.final_energy > r.initial_energy,
                 "energy rose from " + in_short(r.initial_energy) + " by " +
                   in_short(r.final_energy - r.initial_energy));
-  // a vertex of a border that slides may not find a border of the reference
-  const auto may_move = [&](Mesh::Vertex_index v) { return !is_fixed[v]; };
-  const auto is_on = [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_border(v); };
+  // a vertex that slides may not find a line of the reference
+  const auto may_move = [&](Mesh::Vertex_index v) { return freedom[v] != Vertex_freedom::fixed; };
+  const auto is_on = [&](Mesh::Vertex_index v) {
+    return freedom[v] == Vertex_freedom::on_reference;
+  };
   Defects_in_and_out defects;
+  const bool has_triangles = CGAL::is_triangle_mesh(input);
   if(CGAL::is_triangle_mesh(reference))
   {
-    defects.in = placed.locations.orientation_defects(true);
-    defects.out = output.locations.orientation_defects(false);
+    if(has_triangles)
+      defects = {placed.locations.orientation_defects(true),
+                 output.locations.orientation_defects(false)};
     double largest = 0;
     for(const Mesh::Vertex_index v : reference.vertices())
       for(int i = 0; i < 3; ++i)
@@ -145,19 +163,27 @@ inline std::string broken_promises(const Mesh& input,
     broken.add_if(distance > 8 * std::numeric_limits<double>::epsilon() * largest,
                   "a vertex is " + in_short(distance) + " away from its location");
   }
-  else // there are no locations
+  else if(has_triangles) // there are no locations
     defects = {RCO::orientation_defects(placed.mesh, reference),
                RCO::orientation_defects(output.mesh, reference)};
   broken.check_run(placed.mesh, output.mesh, reference, defects, monotonicity_violations, may_move,
                    is_on);
+  return broken;
+}
 
-  const double before = RCO::angle_statistics(placed.mesh).minimum;
-  const double after = RCO::angle_statistics(output.mesh).minimum;
+// what `Minimum_angle_energy` is for
+inline void check_angles(const Mesh& placed,
+                         const Mesh& output,
+                         const CGAL::Reference_constrained_optimization::Result& r,
+                         Broken_promises& broken)
+{
+  namespace RCO = CGAL::Reference_constrained_optimization;
+  const double before = RCO::angle_statistics(placed).minimum;
+  const double after = RCO::angle_statistics(output).minimum;
   const double rounding = 1e-6; // of a small angle that is found by its cosine
-  broken.add_if(defects_out == defects_in && after < before - rounding,
+  broken.add_if(number_of_defects(r) == number_of_initial_defects(r) && after < before - rounding,
                 "minimum angle fell from " + in_short(before) + " degrees by " +
                   in_short(before - after));
-  return broken.text();
 }
 
 inline Outcome checked_run(const Mesh& input,
@@ -202,14 +228,17 @@ inline Outcome checked_run(const Mesh& input,
     call(placed, reference, placed_map, placed_locations.map(), settings, 0, unused);
 
     // borders slide if constraints are relaxed: then only what the map constrains must stay
-    std::vector<char> is_fixed(input.number_of_vertices(), 0);
+    std::vector<Vertex_freedom> freedom(input.number_of_vertices(), Vertex_freedom::on_reference);
     for(const Mesh::Vertex_index v : input.vertices())
-      is_fixed[v] = map[v] || input.is_isolated(v);
-    for(const Mesh::Edge_index e : input.edges())
-      if(input.is_border(e) && !settings.relax_constraints)
-        is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
-    text = broken_promises(input, {placed, placed_locations}, {mesh, locations},
-                           reference ? *reference : input, is_fixed, r, visitor.violations);
+      if(map[v] || input.is_isolated(v))
+        freedom[v] = Vertex_freedom::fixed;
+      else if(input.is_border(v))
+        freedom[v] = settings.relax_constraints ? Vertex_freedom::on_line : Vertex_freedom::fixed;
+    Broken_promises broken =
+      broken_promises(input, {placed, placed_locations}, {mesh, locations},
+                      reference ? *reference : input, freedom, r, visitor.violations);
+    check_angles(placed, mesh, r, broken);
+    text = broken.text();
     const RCO::Angle_statistics in = RCO::angle_statistics(placed),
                                 out = RCO::angle_statistics(mesh);
     figures.angle_minimum_in = in.minimum;
@@ -218,8 +247,7 @@ inline Outcome checked_run(const Mesh& input,
     figures.angle_mean_out = out.mean;
     if(!text.empty())
       return Outcome::broken_promise;
-    const bool repairs = r.number_of_flips + r.number_of_fold_edges <
-                         r.initial_number_of_flips + r.initial_number_of_fold_edges;
+    const bool repairs = number_of_defects(r) < number_of_initial_defects(r);
     // less is rounding
     const bool gains = r.final_energy < r.initial_energy * (1 - 1e-9);
     return repairs || gains ? Outcome::improved : Outcome::nothing_to_do;

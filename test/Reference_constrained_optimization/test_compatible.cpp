@@ -1407,6 +1407,37 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   RCO_CHECK_LESS_EQUAL(0.9 * 3 * patch.number_of_free_vertices, double(placed));
 }
 
+// Two quads of an octahedron that have two vertices in common: the shorter diagonal of both joins these,
+// and there is an edge twice in the triangles that they are split into.
+void test_shared_diagonals()
+{
+  Shape shape;
+  for(const double x : {1., -1.})
+    shape.add(x, 0, 0);
+  for(const double y : {1., -1.})
+    shape.add(0, y, 0);
+  for(const double z : {0.5, -0.5})
+    shape.add(0, 0, z);
+  shape.faces = {{0, 2, 4}, {0, 5, 2}, {0, 4, 3, 5}, {1, 4, 2, 5}, {1, 3, 4}, {1, 5, 3}};
+  Shape skewed = shape;
+  skewed.points[0] += Vector_3(0.2, 0.1, 0.05);
+  skewed.points[4] += Vector_3(0.1, -0.2, 0.1);
+  for(const bool on_surface : {true, false})
+    for(const bool is_own : {true, false})
+    {
+      const Scope scope(std::string(on_surface ? "on the surface" : "flattened") +
+                        (is_own ? ", its own reference" : ""));
+      Mesh mesh = make_mesh<Mesh>(skewed);
+      const Mesh reference = make_mesh<Mesh>(shape);
+      const Energy energy(reference);
+      const RCO::Result r = CGAL::reference_constrained_optimize(
+        mesh, is_own ? mesh : reference, energy, params::use_on_surface_steps(on_surface));
+      RCO_CHECK_LESS_EQUAL(r.number_of_flips + r.number_of_fold_edges,
+                           r.initial_number_of_flips + r.initial_number_of_fold_edges);
+      RCO_CHECK(std::isfinite(r.final_energy));
+    }
+}
+
 int main()
 {
   const auto start = std::chrono::steady_clock::now();
@@ -1437,5 +1468,6 @@ int main()
   timed("optimization of maps", test_from_initial_meshes);
   timed("hard starts", test_hard_starts);
   timed("known optima", test_known_optima);
+  timed("shared diagonals", test_shared_diagonals);
   return report();
 }

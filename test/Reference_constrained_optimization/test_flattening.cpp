@@ -8,6 +8,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
+#include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -572,6 +573,31 @@ void test_walk()
   RCO_CHECK_EQUAL(internal::walk(indexed(two), u, Vector_2(5, 5), 0).triangle, -1);
 }
 
+// A quad whose diagonal is an edge already, around a vertex of two faces: no flattening is injective.
+void test_double_edge()
+{
+  const Scope scope("an edge twice");
+  const std::vector<Vector_3> points = {Vector_3(0.5, 0.1, 0), Vector_3(0, 0, 0), Vector_3(1, 0, 0),
+                                        Vector_3(0.5, 1, 0), Vector_3(0.5, -1, 0)};
+  const internal::Indexed_mesh polygons({0, 3, 6, 10}, {1, 0, 2, 1, 2, 3, 0, 1, 4, 2}, 5);
+  const internal::Indexed_mesh triangles = internal::split_mesh(
+    polygons,
+    [](int f) {
+      return f < 2 ? std::vector<std::array<int, 3>>{{{3 * f, 3 * f + 1, 3 * f + 2}}}
+                   : std::vector<std::array<int, 3>>{{{6, 7, 9}}, {{7, 8, 9}}};
+    },
+    [](int) {});
+  RCO_CHECK_EQUAL(triangles.number_of_faces(), 4);
+  for(const bool use_conformal : {true, false})
+  {
+    internal::Flattening_parameters parameters;
+    parameters.use_conformal = use_conformal;
+    internal::Patch_flattener flattener;
+    RCO_CHECK(flattener.flatten(triangles, points, parameters).path ==
+              internal::Flattening_path::failed);
+  }
+}
+
 int main()
 {
   test_injectivity_checks();
@@ -579,5 +605,6 @@ int main()
   test_flattenings();
   test_conformal_maps();
   test_overlap();
+  test_double_edge();
   return report();
 }

@@ -322,7 +322,7 @@ void test_bad_meshes()
     Shape huge = sphere;
     for(Vector_3& p : huge.points)
       p *= 1e200;
-    refuses(mesh, make_mesh<M>(huge), energy, np, "reference: the coordinates are so large");
+    refuses(mesh, make_mesh<M>(huge), energy, np, "reference: its diagonal is not between");
   }
   {
     const Scope scope("energies for other faces");

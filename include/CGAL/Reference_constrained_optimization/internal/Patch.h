@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_barrier.h>
+#include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
 
 #include <array>
 #include <utility>
@@ -179,19 +180,12 @@ private:
     std::vector<Vector_3> points;
     for(const Placed_vertex& p : patch.placed)
       points.push_back(p.position);
-    std::vector<int> begins(1, 0), corners;
-    for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
-    {
-      patch.first_triangle.push_back(int(begins.size()) - 1);
-      for(const auto& t : split_flat(patch.polygons, points, f))
-      {
-        patch.split_polygon.push_back(f);
-        for(const int c : t)
-          corners.push_back(patch.polygons.corner_vertex[c]);
-        begins.push_back(int(corners.size()));
-      }
-    }
-    patch.split = Indexed_mesh(std::move(begins), std::move(corners), int(points.size()));
+    const auto split_polygon = [&](int f) { return split_flat(patch.polygons, points, f); };
+    patch.split = split_mesh(patch.polygons, split_polygon, [&](int f) {
+      if(patch.split_polygon.empty() || patch.split_polygon.back() != f)
+        patch.first_triangle.push_back(int(patch.split_polygon.size()));
+      patch.split_polygon.push_back(f);
+    });
   }
 
   // along the shorter diagonal, unless a quad that is not convex would be folded by it

@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
 #include <CGAL/Reference_constrained_optimization/internal/has_area.h>
+#include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -255,7 +256,6 @@ private:
   void split(const Mesh_copy& copy)
   {
     const int n = copy.mesh.number_of_faces();
-    std::vector<int> begins(1, 0), corners;
     if(copy.mesh.number_of_corners() == 3 * n)
     {
       m_mesh = copy.mesh;
@@ -263,15 +263,9 @@ private:
         m_original_face.push_back(f);
       return;
     }
-    for(int f = 0; f < n; ++f)
-      for(const auto& t : split_face(copy.mesh, copy.points, f))
-      {
-        for(const int c : t)
-          corners.push_back(copy.mesh.corner_vertex[c]);
-        begins.push_back(int(corners.size()));
-        m_original_face.push_back(f);
-      }
-    m_mesh = Indexed_mesh(std::move(begins), std::move(corners), int(m_points.size()));
+    m_mesh = split_mesh(
+      copy.mesh, [&](int f) { return split_face(copy.mesh, copy.points, f); },
+      [&](int f) { m_original_face.push_back(f); });
   }
 
   void compute_normals()

@@ -170,8 +170,9 @@ private:
     return result;
   }
 
-  // CGAL's mesh of the patch, moved to the origin and scaled to unit area
-  void build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
+  // CGAL's mesh of the patch, moved to the origin and scaled to unit area. False, and no mesh, if two
+  // edges join the same vertices, as diagonals of quads may do: nothing of this is injective in the plane.
+  bool build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
     m_mesh.reserve(Surface_mesh::size_type(points.size()),
                    Surface_mesh::size_type(3 * points.size()),
@@ -186,8 +187,13 @@ private:
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const int* v = &triangles.corner_vertex[3 * t];
-      m_mesh.add_face(Vertex(v[0]), Vertex(v[1]), Vertex(v[2]));
+      if(m_mesh.add_face(Vertex(v[0]), Vertex(v[1]), Vertex(v[2])) == Surface_mesh::null_face())
+      {
+        m_mesh.clear();
+        return false;
+      }
     }
+    return true;
   }
 
   // CGAL's mesh is built when the first of its parameterizers asks for it
@@ -198,8 +204,8 @@ private:
            Flattening& flattening)
   {
     namespace SMP = CGAL::Surface_mesh_parameterization;
-    if(m_mesh.is_empty())
-      build(triangles, points);
+    if(m_mesh.is_empty() && !build(triangles, points))
+      return false;
     Surface_mesh::Halfedge_index border = Surface_mesh::null_halfedge();
     for(const Surface_mesh::Halfedge_index h : m_mesh.halfedges())
       if(m_mesh.is_border(h))
