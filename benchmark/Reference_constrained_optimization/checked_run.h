@@ -75,17 +75,21 @@ call(Mesh& mesh,
      unsigned int iterations,
      Monotonicity_visitor& visitor)
 {
-  return CGAL::reference_constrained_optimize(
-    mesh, reference ? *reference : mesh,
-    CGAL::Reference_constrained_optimization::Minimum_angle_energy(),
-    CGAL::parameters::use_on_surface_steps(s.on_surface)
-      .use_finishing_stage(s.finishing)
-      .vertex_location_map(locations)
-      .random_seed(s.seed)
-      .number_of_iterations(iterations)
-      .vertex_is_constrained_map(is_constrained)
-      .relax_constraints(s.relax_constraints)
-      .visitor(std::ref(visitor)));
+  const Mesh& surface = reference ? *reference : mesh;
+  const auto call_with = [&](const auto& own) {
+    return CGAL::reference_constrained_optimize(
+      mesh, surface, CGAL::Reference_constrained_optimization::Minimum_angle_energy(),
+      own.random_seed(s.seed)
+        .number_of_iterations(iterations)
+        .vertex_is_constrained_map(is_constrained)
+        .relax_constraints(s.relax_constraints)
+        .visitor(std::ref(visitor)));
+  };
+  const auto own =
+    CGAL::parameters::use_on_surface_steps(s.on_surface).use_finishing_stage(s.finishing);
+  // there are no locations on quads
+  return CGAL::is_triangle_mesh(surface) ? call_with(own.vertex_location_map(locations))
+                                         : call_with(own);
 }
 
 inline std::size_t
