@@ -109,8 +109,11 @@ public:
     return a.dot(b) < cosine * a.norm() * b.norm();
   }
 
-  // Points of R that a mesh may not leave: first the vertices, then the middles of the creases (given by
-  // a corner each), where a mesh with vertices on both sides is furthest away.
+  // one corner for each edge where R is sharp
+  const std::vector<int>& creases() const { return m_creases; }
+
+  // Points of R that a mesh may not leave: first the vertices, then the middles of the creases, where
+  // a mesh with vertices on both sides is furthest away.
   int number_of_witnesses() const { return m_mesh.number_of_vertices() + int(m_creases.size()); }
   int crease(int witness) const { return m_creases[witness - m_mesh.number_of_vertices()]; }
   Vector_3 witness(int i) const
@@ -125,8 +128,7 @@ public:
   void reverse(const std::vector<char>& is_reversed)
   {
     for(int v = 0; v < m_mesh.number_of_vertices(); ++v)
-      if(m_mesh.vertex_begin[v] < m_mesh.vertex_begin[v + 1] &&
-         is_reversed[m_mesh.corner_face[m_mesh.vertex_corners[m_mesh.vertex_begin[v]]]])
+      if(m_mesh.vertex_begin[v] < m_mesh.vertex_begin[v + 1] && is_reversed[m_mesh.face_at(v)])
         m_normals[v] = -m_normals[v];
   }
 

@@ -37,9 +37,8 @@ Reference_lines read_reference_lines(const ReferenceMesh& graph,
   if constexpr(parameters::is_default_parameter<NamedParameters,
                                                 CGAL::internal_np::edge_is_constrained_t>::value)
   {
-    for(int c = 0; c < triangles.number_of_corners(); ++c)
-      if(c < triangles.opposite[c] && reference.is_crease(c))
-        lines.features.push_back({{triangles.source(c), triangles.target(c)}});
+    for(const int c : reference.creases())
+      lines.features.push_back({{triangles.source(c), triangles.target(c)}});
   }
   else
   {
