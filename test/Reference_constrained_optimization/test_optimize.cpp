@@ -261,22 +261,18 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
   return m;
 }
 
-double largest_coordinate(const Shape& s)
-{
-  double largest = 0;
-  for(const Vector_3& p : s.points)
-    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
-  return largest;
-}
-
 // All that must hold of any run. `unit` is the distance of neighbouring numbers near 1.
 Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
 {
   const RCO::Result& r = out.result;
   const Recorder& seen = out.recorder;
-  const double diagonal =
-    CGAL::Reference_constrained_optimization::internal::bounding_box_diagonal(out.reference.points);
-  const double tolerance = 1e-12 * diagonal + 4 * unit * largest_coordinate(out.reference);
+  namespace internal = CGAL::Reference_constrained_optimization::internal;
+  const Indexed_mesh surface = indexed(out.reference);
+  const std::vector<Vector_3>& points = out.reference.points;
+  const double largest =
+    internal::largest_coordinate(surface, [&](int v) -> const Vector_3& { return points[v]; });
+  const double tolerance =
+    1e-12 * internal::bounding_box_diagonal(surface, points) + 4 * unit * largest;
 
   RCO_CHECK(out.before.faces == out.after.faces);
   std::size_t number_free = 0;

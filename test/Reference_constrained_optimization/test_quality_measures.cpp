@@ -100,6 +100,15 @@ void test_drift()
   const RCO::Distance_to_reference far = RCO::distance_to_reference(make_mesh<Mesh>(spike), plane);
   RCO_CHECK_NEAR(far.maximum, 0.5, 1e-12);
   RCO_CHECK_EQUAL(far.vertex, std::size_t(middle));
+
+  // vertices without faces do not make the tolerance larger
+  Shape with = spike;
+  with.add(0, 1e9, 0);
+  const auto tolerance = [](const Shape& s) {
+    const Mesh mesh = make_mesh<Mesh>(s);
+    return RCO::distance_to_reference(mesh, mesh).tolerance;
+  };
+  RCO_CHECK_EQUAL(tolerance(with), tolerance(spike));
 }
 
 void test_orientation()

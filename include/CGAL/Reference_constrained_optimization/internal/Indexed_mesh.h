@@ -245,17 +245,28 @@ inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>
   return sum;
 }
 
-inline double bounding_box_diagonal(const std::vector<Vector_3>& points)
+// vertices without faces may be anywhere, and count in neither of these
+inline double bounding_box_diagonal(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
 {
-  if(points.empty())
+  if(mesh.corner_vertex.empty())
     return 0;
-  Vector_3 low = points.front(), high = points.front();
-  for(const Vector_3& p : points)
+  Vector_3 low = points[mesh.corner_vertex.front()], high = low;
+  for(const int v : mesh.corner_vertex)
   {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+    low = low.cwiseMin(points[v]);
+    high = high.cwiseMax(points[v]);
   }
   return (high - low).norm();
+}
+
+// `point(v)` is the position of a vertex
+template <typename PointAccess>
+double largest_coordinate(const Indexed_mesh& mesh, const PointAccess& point)
+{
+  double largest = 0;
+  for(const int v : mesh.corner_vertex)
+    largest = (std::max)(largest, point(v).cwiseAbs().maxCoeff());
+  return largest;
 }
 
 // the corners of face f, split into triangles; quads along their shorter diagonal

@@ -47,7 +47,7 @@ public:
       m_search(std::make_unique<Search>())
   {
     split(copy);
-    m_diagonal = bounding_box_diagonal(m_points);
+    m_diagonal = bounding_box_diagonal(m_mesh, m_points);
     // fourth powers of lengths, those of small edges too, must stay in the range of double
     const double smallest = 1e-60, largest = 1e60;
     if(m_diagonal > 0 && !(m_diagonal > smallest && m_diagonal < largest))

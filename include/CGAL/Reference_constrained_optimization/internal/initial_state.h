@@ -94,9 +94,8 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
   // a vertex this close is on R already, and keeps its bits
-  double largest = 0;
-  for(const Vector_3& p : points)
-    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
+  const double largest =
+    largest_coordinate(mesh, [&](int v) -> const Vector_3& { return points[v]; });
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
 
   const Indexed_mesh& surface = reference.mesh();
