@@ -269,17 +269,28 @@ double largest_coordinate(const Indexed_mesh& mesh, const PointAccess& point)
   return largest;
 }
 
-// the corners of face f, split into triangles; quads along their shorter diagonal
+// The corners of face f, split into triangles; quads along their shorter diagonal, unless that leaves
+// triangles without area, as where opposite vertices coincide, and the other does not.
 inline std::vector<std::array<int, 3>>
 split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
 {
+  typedef std::vector<std::array<int, 3>> Triangles;
   const int c = mesh.face_begin[f];
   if(mesh.degree(f) == 3)
     return {{{c, c + 1, c + 2}}};
-  const auto at = [&](int i) { return points[mesh.corner_vertex[c + i]]; };
-  if((at(0) - at(2)).squaredNorm() <= (at(1) - at(3)).squaredNorm())
-    return {{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}};
-  return {{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}};
+  const auto at = [&](int i) -> const Vector_3& { return points[mesh.corner_vertex[i]]; };
+  const auto area = [&](const Triangles& triangles) {
+    double sum = 0;
+    for(const std::array<int, 3>& t : triangles)
+      sum += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
+    return sum;
+  };
+  Triangles shorter = {{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}},
+            longer = {{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}};
+  if((at(c) - at(c + 2)).squaredNorm() > (at(c + 1) - at(c + 3)).squaredNorm())
+    shorter.swap(longer);
+  const double rounding = 1e-12;
+  return area(shorter) < rounding * area(longer) ? longer : shorter;
 }
 
 } // namespace internal
