@@ -172,6 +172,20 @@ void test_folded_quads()
   }
 }
 
+// Faces without area hold points that no other face has: here lines of several faces, one of them on
+// top of another, beside a body.
+void test_hairs()
+{
+  Shape hairs;
+  for(const double x : {0., 1., 3., 0.5, 2., 1.})
+    hairs.add(x, 2 * x, -x);
+  hairs.triangle(0, 1, 3);
+  hairs.triangle(1, 2, 4);
+  hairs.triangle(2, 1, 5);
+  test_closest(joined(tetrahedron(), hairs, Vector_3(0.5, 0, 0)), "hairs");
+  test_closest(joined(hairs, icosphere(1), Vector_3(0.5, 0, 0)), "hairs through a sphere");
+}
+
 // on a convex surface there is one local minimum for a point outside
 void test_descend_on_convex_surfaces()
 {
@@ -583,6 +597,7 @@ int main()
   test_closest(joined(torus(16, 8), tetrahedron(), Vector_3(1, 0, 0)), "two components");
   test_closest(plane_grid(6, 5, 1, true), "quads");
   test_folded_quads();
+  test_hairs();
   test_descend_on_convex_surfaces();
   test_descend_on_double_sheet();
   test_map_to_reference_on_sheets();
