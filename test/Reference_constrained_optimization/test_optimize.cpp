@@ -496,6 +496,26 @@ void test_small_meshes()
     const Outcome other = optimized(shape, reference);
     RCO_CHECK_LESS(other.result.final_energy, other.result.initial_energy);
   }
+  for(const bool is_copy : {false, true})
+  {
+    const Scope scope("components that touch in a vertex of both, and sheets on top of each other");
+    const Shape sphere = icosphere(2);
+    for(const Shape& shape :
+        {joined(sphere, sphere, 2 * sphere.points[5]),
+         joined(plane_grid(6, 6), turned_round(plane_grid(6, 6)), Vector_3::Zero())})
+    {
+      Shape rotated = shape; // the same surface, its vertices in another order
+      std::rotate(rotated.points.begin(), rotated.points.begin() + 7, rotated.points.end());
+      const int n = int(shape.points.size()), faces = int(shape.faces.size());
+      for(auto& f : rotated.faces)
+        for(int& v : f)
+          v = (v + n - 7) % n;
+      const Outcome out = optimized(shape, is_copy ? rotated : shape);
+      RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
+      for(int v = 0; v < n; ++v)
+        RCO_CHECK_EQUAL(out.locations[v].first < faces / 2, v < n / 2);
+    }
+  }
   {
     const Scope scope("all vertices constrained");
     Options options;

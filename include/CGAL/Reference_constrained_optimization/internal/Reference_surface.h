@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <queue>
@@ -160,6 +161,26 @@ public:
       kernel_point(p), {kernel_point(known.position), Triangle_iterator(s.triangles.end())});
     return closest_of_hairs(
       p, hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit));
+  }
+
+  // what is within a distance of p, by the tree: the closest point of every face there
+  std::vector<Surface_point> all_within(const Vector_3& p, double distance) const
+  {
+    const Search& s = search();
+    const Vector_3 half = Vector_3::Constant(distance);
+    std::vector<Triangle_iterator> hits;
+    s.tree.all_intersected_primitives(
+      Kernel::Iso_cuboid_3(kernel_point(p - half), kernel_point(p + half)),
+      std::back_inserter(hits));
+    std::vector<Surface_point> result;
+    for(const Triangle_iterator& hit : hits)
+    {
+      const Surface_point q =
+        closest_in_face(p, s.face[hit - Triangle_iterator(s.triangles.begin())]);
+      if((q.position - p).norm() <= distance)
+        result.push_back(q);
+    }
+    return result;
   }
 
   // local closest point, from `face` on
