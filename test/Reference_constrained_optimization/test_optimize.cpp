@@ -261,22 +261,18 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
   return m;
 }
 
-double largest_coordinate(const Shape& s)
-{
-  double largest = 0;
-  for(const Vector_3& p : s.points)
-    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
-  return largest;
-}
-
 // All that must hold of any run. `unit` is the distance of neighbouring numbers near 1.
 Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
 {
   const RCO::Result& r = out.result;
   const Recorder& seen = out.recorder;
-  const double diagonal =
-    CGAL::Reference_constrained_optimization::internal::bounding_box_diagonal(out.reference.points);
-  const double tolerance = 1e-12 * diagonal + 4 * unit * largest_coordinate(out.reference);
+  namespace internal = CGAL::Reference_constrained_optimization::internal;
+  const Indexed_mesh surface = indexed(out.reference);
+  const std::vector<Vector_3>& points = out.reference.points;
+  const double largest =
+    internal::largest_coordinate(surface, [&](int v) -> const Vector_3& { return points[v]; });
+  const double tolerance =
+    1e-12 * internal::bounding_box_diagonal(surface, points) + 4 * unit * largest;
 
   RCO_CHECK(out.before.faces == out.after.faces);
   std::size_t number_free = 0;
@@ -499,6 +495,26 @@ void test_small_meshes()
     reference.add(0.5, 0.5, 10);
     const Outcome other = optimized(shape, reference);
     RCO_CHECK_LESS(other.result.final_energy, other.result.initial_energy);
+  }
+  for(const bool is_copy : {false, true})
+  {
+    const Scope scope("components that touch in a vertex of both, and sheets on top of each other");
+    const Shape sphere = icosphere(2);
+    for(const Shape& shape :
+        {joined(sphere, sphere, 2 * sphere.points[5]),
+         joined(plane_grid(6, 6), turned_round(plane_grid(6, 6)), Vector_3::Zero())})
+    {
+      Shape rotated = shape; // the same surface, its vertices in another order
+      std::rotate(rotated.points.begin(), rotated.points.begin() + 7, rotated.points.end());
+      const int n = int(shape.points.size()), faces = int(shape.faces.size());
+      for(auto& f : rotated.faces)
+        for(int& v : f)
+          v = (v + n - 7) % n;
+      const Outcome out = optimized(shape, is_copy ? rotated : shape);
+      RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
+      for(int v = 0; v < n; ++v)
+        RCO_CHECK_EQUAL(out.locations[v].first < faces / 2, v < n / 2);
+    }
   }
   {
     const Scope scope("all vertices constrained");

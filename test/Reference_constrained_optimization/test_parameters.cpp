@@ -295,6 +295,10 @@ void test_bad_meshes()
     M mesh = make_mesh<M>(bad);
     refuses(mesh, reference, energy, np, "mesh: vertex 23 is 1.0");
     refuses(mesh, reference, energy, np, "at most 0.34");
+    // vertices without faces do not make the reference larger
+    Shape with = sphere;
+    with.add(1000, 0, 0);
+    refuses(mesh, make_mesh<M>(with), energy, np, "at most 0.34");
     // small numbers are told as well
     Shape small = bad;
     for(Vector_3& p : small.points)

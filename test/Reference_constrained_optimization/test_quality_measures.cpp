@@ -100,6 +100,15 @@ void test_drift()
   const RCO::Distance_to_reference far = RCO::distance_to_reference(make_mesh<Mesh>(spike), plane);
   RCO_CHECK_NEAR(far.maximum, 0.5, 1e-12);
   RCO_CHECK_EQUAL(far.vertex, std::size_t(middle));
+
+  // vertices without faces do not make the tolerance larger
+  Shape with = spike;
+  with.add(0, 1e9, 0);
+  const auto tolerance = [](const Shape& s) {
+    const Mesh mesh = make_mesh<Mesh>(s);
+    return RCO::distance_to_reference(mesh, mesh).tolerance;
+  };
+  RCO_CHECK_EQUAL(tolerance(with), tolerance(spike));
 }
 
 void test_orientation()
@@ -119,6 +128,20 @@ void test_orientation()
   for(auto& f : back.faces)
     std::reverse(f.begin(), f.end());
   RCO_CHECK_EQUAL(RCO::orientation_defects(reference, make_mesh<Mesh>(back)).total(), 0u);
+
+  // Where a surface passes through itself, the normals of the other part say nothing: here two
+  // planes that are nearly turned against each other, and a mesh with vertices on the line where they
+  // meet that the reference does not have.
+  const auto crossing = [](int n) {
+    Shape tilted = turned_round(plane_grid(n, n));
+    for(Vector_3& p : tilted.points)
+      p.z() = 0.3 * (p.x() - 0.5);
+    return joined(plane_grid(n, n), tilted, Vector_3::Zero());
+  };
+  for(const Shape& surface : {crossing(3), turned_round(crossing(3))})
+    RCO_CHECK_EQUAL(
+      RCO::orientation_defects(make_mesh<Mesh>(crossing(16)), make_mesh<Mesh>(surface)).total(),
+      0u);
 }
 
 void test_quads()

@@ -156,6 +156,36 @@ void test_closest(const Shape& shape, const std::string& name)
                          1e-15);
 }
 
+// quads with opposite vertices in one place: split between these, they would have no area
+void test_folded_quads()
+{
+  const Scope scope("quads folded flat");
+  for(const int pinched : {0, 1})
+  {
+    Shape shape;
+    for(int i = 0; i < 4; ++i)
+      shape.add(i + 1, 0.3 * i * i, i % 2);
+    shape.points[pinched] = shape.points[pinched + 2];
+    shape.faces.push_back({0, 1, 2, 3});
+    RCO_CHECK_LESS(0.1, surface_of(shape).area());
+    test_closest(joined(shape, tetrahedron(), Vector_3(5, 0, 0)), "quads folded flat");
+  }
+}
+
+// Faces without area hold points that no other face has: here lines of several faces, one of them on
+// top of another, beside a body.
+void test_hairs()
+{
+  Shape hairs;
+  for(const double x : {0., 1., 3., 0.5, 2., 1.})
+    hairs.add(x, 2 * x, -x);
+  hairs.triangle(0, 1, 3);
+  hairs.triangle(1, 2, 4);
+  hairs.triangle(2, 1, 5);
+  test_closest(joined(tetrahedron(), hairs, Vector_3(0.5, 0, 0)), "hairs");
+  test_closest(joined(hairs, icosphere(1), Vector_3(0.5, 0, 0)), "hairs through a sphere");
+}
+
 // on a convex surface there is one local minimum for a point outside
 void test_descend_on_convex_surfaces()
 {
@@ -566,6 +596,8 @@ int main()
   test_closest(double_sheet(8, 1e-3, 0.05), "a double sheet");
   test_closest(joined(torus(16, 8), tetrahedron(), Vector_3(1, 0, 0)), "two components");
   test_closest(plane_grid(6, 5, 1, true), "quads");
+  test_folded_quads();
+  test_hairs();
   test_descend_on_convex_surfaces();
   test_descend_on_double_sheet();
   test_map_to_reference_on_sheets();

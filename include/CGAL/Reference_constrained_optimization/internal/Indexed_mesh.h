@@ -245,30 +245,52 @@ inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>
   return sum;
 }
 
-inline double bounding_box_diagonal(const std::vector<Vector_3>& points)
+// vertices without faces may be anywhere, and count in neither of these
+inline double bounding_box_diagonal(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
 {
-  if(points.empty())
+  if(mesh.corner_vertex.empty())
     return 0;
-  Vector_3 low = points.front(), high = points.front();
-  for(const Vector_3& p : points)
+  Vector_3 low = points[mesh.corner_vertex.front()], high = low;
+  for(const int v : mesh.corner_vertex)
   {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+    low = low.cwiseMin(points[v]);
+    high = high.cwiseMax(points[v]);
   }
   return (high - low).norm();
 }
 
-// the corners of face f, split into triangles; quads along their shorter diagonal
+// `point(v)` is the position of a vertex
+template <typename PointAccess>
+double largest_coordinate(const Indexed_mesh& mesh, const PointAccess& point)
+{
+  double largest = 0;
+  for(const int v : mesh.corner_vertex)
+    largest = (std::max)(largest, point(v).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+// The corners of face f, split into triangles; quads along their shorter diagonal, unless that leaves
+// triangles without area, as where opposite vertices coincide, and the other does not.
 inline std::vector<std::array<int, 3>>
 split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
 {
+  typedef std::vector<std::array<int, 3>> Triangles;
   const int c = mesh.face_begin[f];
   if(mesh.degree(f) == 3)
     return {{{c, c + 1, c + 2}}};
-  const auto at = [&](int i) { return points[mesh.corner_vertex[c + i]]; };
-  if((at(0) - at(2)).squaredNorm() <= (at(1) - at(3)).squaredNorm())
-    return {{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}};
-  return {{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}};
+  const auto at = [&](int i) -> const Vector_3& { return points[mesh.corner_vertex[i]]; };
+  const auto area = [&](const Triangles& triangles) {
+    double sum = 0;
+    for(const std::array<int, 3>& t : triangles)
+      sum += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
+    return sum;
+  };
+  Triangles shorter = {{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}},
+            longer = {{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}};
+  if((at(c) - at(c + 2)).squaredNorm() > (at(c + 1) - at(c + 3)).squaredNorm())
+    shorter.swap(longer);
+  const double rounding = 1e-12;
+  return area(shorter) < rounding * area(longer) ? longer : shorter;
 }
 
 } // namespace internal

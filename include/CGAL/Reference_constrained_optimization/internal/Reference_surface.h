@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <queue>
@@ -39,7 +40,7 @@ class Reference_surface
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
   typedef std::vector<Kernel::Triangle_3>::const_iterator Triangle_iterator;
-  typedef Triangle_tree<Kernel, Triangle_iterator> Tree;
+  typedef std::vector<Kernel::Segment_3>::const_iterator Segment_iterator;
 
 public:
   explicit Reference_surface(const Mesh_copy& copy)
@@ -47,7 +48,7 @@ public:
       m_search(std::make_unique<Search>())
   {
     split(copy);
-    m_diagonal = bounding_box_diagonal(m_points);
+    m_diagonal = bounding_box_diagonal(m_mesh, m_points);
     // fourth powers of lengths, those of small edges too, must stay in the range of double
     const double smallest = 1e-60, largest = 1e60;
     if(m_diagonal > 0 && !(m_diagonal > smallest && m_diagonal < largest))
@@ -149,18 +150,37 @@ public:
   Surface_point closest(const Vector_3& p) const
   {
     const Search& s = search();
-    return closest_of(p, s.tree.closest_point_and_primitive(Kernel::Point_3(p.x(), p.y(), p.z())));
+    return closest_of_hairs(p, closest_of(p, s.tree.closest_point_and_primitive(kernel_point(p))));
   }
 
   // the same where a point of R is known already: the tree looks only at what is closer
   Surface_point closest(const Vector_3& p, const Surface_point& known) const
   {
     const Search& s = search();
-    const Vector_3& q = known.position;
     const auto hit = s.tree.closest_point_and_primitive(
-      Kernel::Point_3(p.x(), p.y(), p.z()),
-      {Kernel::Point_3(q.x(), q.y(), q.z()), Triangle_iterator(s.triangles.end())});
-    return hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit);
+      kernel_point(p), {kernel_point(known.position), Triangle_iterator(s.triangles.end())});
+    return closest_of_hairs(
+      p, hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit));
+  }
+
+  // what is within a distance of p, by the tree: the closest point of every face there
+  std::vector<Surface_point> all_within(const Vector_3& p, double distance) const
+  {
+    const Search& s = search();
+    const Vector_3 half = Vector_3::Constant(distance);
+    std::vector<Triangle_iterator> hits;
+    s.tree.all_intersected_primitives(
+      Kernel::Iso_cuboid_3(kernel_point(p - half), kernel_point(p + half)),
+      std::back_inserter(hits));
+    std::vector<Surface_point> result;
+    for(const Triangle_iterator& hit : hits)
+    {
+      const Surface_point q =
+        closest_in_face(p, s.face[hit - Triangle_iterator(s.triangles.begin())]);
+      if((q.position - p).norm() <= distance)
+        result.push_back(q);
+    }
+    return result;
   }
 
   // local closest point, from `face` on
@@ -214,8 +234,18 @@ private:
     std::once_flag is_built;
     std::vector<Kernel::Triangle_3> triangles;
     std::vector<int> face; // per triangle
-    Tree tree;
+    Triangle_tree<Kernel, Triangle_iterator> tree;
+    // Faces without area confuse such a tree. What they hold that no face with area does: their
+    // longest sides, where the face behind has none, either.
+    std::vector<Kernel::Segment_3> hairs;
+    std::vector<int> hair_face;
+    Segment_tree<Kernel, Segment_iterator> hair_tree;
   };
+
+  static Kernel::Point_3 kernel_point(const Vector_3& p)
+  {
+    return Kernel::Point_3(p.x(), p.y(), p.z());
+  }
 
   const Search& search() const
   {
@@ -230,28 +260,58 @@ private:
     return closest_in_face(p, s.face[hit.second - Triangle_iterator(s.triangles.begin())]);
   }
 
+  // the closest point of a hair if that is closer by more than rounding, else the known one
+  Surface_point closest_of_hairs(const Vector_3& p, const Surface_point& known) const
+  {
+    const Search& s = *m_search;
+    if(s.hairs.empty())
+      return known;
+    const auto hit = s.hair_tree.closest_point_and_primitive(kernel_point(p));
+    const int face = s.hair_face[hit.second - Segment_iterator(s.hairs.begin())];
+    const Surface_point on_hair = closest_in_face(p, face);
+    const double rounding = 1e-14 * m_diagonal;
+    return (on_hair.position - p).norm() + rounding < (known.position - p).norm() ? on_hair : known;
+  }
+
   void build_tree() const
   {
     Search& s = *m_search;
+    const auto triangle = [&](int f) {
+      return Kernel::Triangle_3(kernel_point(corner_point(f, 0)), kernel_point(corner_point(f, 1)),
+                                kernel_point(corner_point(f, 2)));
+    };
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
-      Kernel::Point_3 p[3];
-      for(int i = 0; i < 3; ++i)
+      const Kernel::Triangle_3 t = triangle(f);
+      if(!t.is_degenerate())
       {
-        const Vector_3& q = corner_point(f, i);
-        p[i] = Kernel::Point_3(q.x(), q.y(), q.z());
-      }
-      // degenerate triangles hold no point that their neighbours do not, and confuse the tree
-      const Kernel::Triangle_3 triangle(p[0], p[1], p[2]);
-      if(!triangle.is_degenerate())
-      {
-        s.triangles.push_back(triangle);
+        s.triangles.push_back(t);
         s.face.push_back(f);
+        continue;
+      }
+      int i = 0;
+      for(const int k : {1, 2})
+        if(side_length(f, k) > side_length(f, i))
+          i = k;
+      const int behind = m_mesh.opposite[m_mesh.face_begin[f] + i];
+      if(side_length(f, i) > 0 &&
+         (behind < 0 || triangle(m_mesh.corner_face[behind]).is_degenerate()))
+      {
+        s.hairs.emplace_back(t[i], t[i + 1]);
+        s.hair_face.push_back(f);
       }
     }
     s.tree.insert(s.triangles.begin(), s.triangles.end());
     s.tree.build();
     s.tree.accelerate_distance_queries();
+    s.hair_tree.insert(s.hairs.begin(), s.hairs.end());
+    s.hair_tree.build();
+    s.hair_tree.accelerate_distance_queries();
+  }
+
+  double side_length(int f, int i) const
+  {
+    return (corner_point(f, (i + 1) % 3) - corner_point(f, i)).norm();
   }
 
   // quads into triangles

@@ -19,10 +19,8 @@ namespace internal {
 template <typename PointAccess>
 bool has_area(const Indexed_mesh& mesh, const PointAccess& point)
 {
-  double largest = 0;
-  for(const int v : mesh.corner_vertex)
-    largest = (std::max)(largest, point(v).cwiseAbs().maxCoeff());
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
+  const double rounding =
+    4 * std::numeric_limits<double>::epsilon() * largest_coordinate(mesh, point);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
   {
     const Vector_3& p = point(mesh.source(c));

@@ -18,6 +18,7 @@
 #include <boost/graph/graph_traits.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -82,8 +83,45 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
   return is_free;
 }
 
-// Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free vertices onto it. A reference
-// that is oriented the other way is turned round, each component of it by itself.
+// Where R passes a vertex within a distance more than once, its point of the sheet along which its
+// faces lie; else the given one.
+inline Surface_point on_own_sheet(const Indexed_mesh& mesh,
+                                  const std::vector<Vector_3>& points,
+                                  int v,
+                                  const Reference_surface& reference,
+                                  const Surface_point& found,
+                                  double distance)
+{
+  const auto cosine = [](const Vector_3& a, const Vector_3& b) {
+    const double lengths = a.norm() * b.norm();
+    return lengths > 0 ? a.dot(b) / lengths : 0;
+  };
+  const Vector_3 found_normal = reference.normal(found);
+  const double same_sheet = 0.9;
+  std::vector<Surface_point> others;
+  for(const Surface_point& q : reference.all_within(points[v], distance))
+    if(cosine(reference.normal(q), found_normal) < same_sheet)
+      others.push_back(q);
+  if(others.empty())
+    return found;
+  Vector_3 normal = Vector_3::Zero();
+  for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    normal += face_vector_area(mesh, points, mesh.corner_face[mesh.vertex_corners[k]]);
+  // the mesh may be oriented the other way, but not if R has both sides there
+  const auto agreement = [&](const Surface_point& q) {
+    const double c = cosine(reference.normal(q), normal), little = 1e-3;
+    return std::abs(c) + little * c;
+  };
+  Surface_point best = found;
+  for(const Surface_point& q : others)
+    if(agreement(q) > agreement(best))
+      best = q;
+  return best;
+}
+
+// Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free
+// vertices onto it. A reference that is oriented the other way is turned round, each component of it
+// by itself.
 template <typename ConcurrencyTag = CGAL::Sequential_tag>
 void place_on_reference(const std::vector<Vector_3>& points,
                         Reference_surface& reference,
@@ -94,15 +132,20 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
   // a vertex this close is on R already, and keeps its bits
-  double largest = 0;
-  for(const Vector_3& p : points)
-    largest = (std::max)(largest, p.cwiseAbs().maxCoeff());
+  const double largest =
+    largest_coordinate(mesh, [&](int v) -> const Vector_3& { return points[v]; });
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
+  const double touching = 1e-12 * reference.diagonal() + rounding;
 
   const Indexed_mesh& surface = reference.mesh();
-  const Point_index index(reference.points(), [&](int v) {
-    return surface.vertex_begin[v] < surface.vertex_begin[v + 1];
-  });
+  const auto is_used = [&](int v) { return surface.vertex_begin[v] < surface.vertex_begin[v + 1]; };
+  const Point_index index(reference.points(), is_used);
+  // of several vertices of R in one place, the one that has the same number if R is the mesh
+  const auto find_twin = [&](int v) {
+    const bool is_twin =
+      v < surface.number_of_vertices() && is_used(v) && reference.points()[v] == points[v];
+    return is_twin ? v : index.find(points[v]);
+  };
   // what is not optimized may be where it likes
   const auto is_needed = [&](int v) {
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
@@ -117,9 +160,11 @@ void place_on_reference(const std::vector<Vector_3>& points,
       check_now_and_then(interruption, v);
       if(mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
       {
-        const int twin = index.find(points[v]);
-        state.vertices[v].on_reference =
-          twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
+        const int twin = find_twin(v);
+        Surface_point& point = state.vertices[v].on_reference;
+        point = twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
+        if(twin < 0 && (point.position - points[v]).norm() <= touching)
+          point = on_own_sheet(mesh, points, v, reference, point, touching);
       }
     }
   });

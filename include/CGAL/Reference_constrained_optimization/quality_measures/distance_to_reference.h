@@ -13,7 +13,6 @@
 #include <boost/graph/graph_traits.hpp>
 #include <boost/property_map/property_map.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
@@ -91,12 +90,10 @@ distance_to_reference(const FaceGraph& mesh,
   const internal::Reference_surface surface(
     internal::read_measured_mesh(reference, np_reference, "reference"));
   Distance_to_reference result;
-  double largest_coordinate = 0;
   int i = -1;
   for(const auto v : vertices(mesh))
   {
     ++i;
-    largest_coordinate = (std::max)(largest_coordinate, copy.points[i].cwiseAbs().maxCoeff());
     if(copy.mesh.vertex_begin[i] == copy.mesh.vertex_begin[i + 1] || !filter(v))
       continue;
     ++result.number_of_vertices;
@@ -107,7 +104,9 @@ distance_to_reference(const FaceGraph& mesh,
       result.vertex = std::size_t(i);
     }
   }
-  result.tolerance = 1e-12 * surface.diagonal() + 4 * unit * largest_coordinate;
+  const double largest = internal::largest_coordinate(
+    copy.mesh, [&](int v) -> const internal::Vector_3& { return copy.points[v]; });
+  result.tolerance = 1e-12 * surface.diagonal() + 4 * unit * largest;
   return result;
 }
 

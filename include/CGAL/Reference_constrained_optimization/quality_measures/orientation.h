@@ -37,7 +37,9 @@ struct Orientation_defects
  * counts the faces that are turned against the reference and the edges that are folded.
  *
  * The reference's normal at a vertex of the mesh is interpolated linearly from the area-weighted
- * unit normals at the vertices of the reference's triangle in which the vertex' closest point lies.
+ * unit normals at the vertices of the reference's triangle in which the vertex' closest point lies;
+ * where the reference passes through a vertex more than once, on the sheet along which the vertex'
+ * faces lie.
  * If the mesh as a whole is oriented against the reference, these normals are turned round first.
  *
  * \param mesh the mesh
