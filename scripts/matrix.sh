@@ -9,13 +9,12 @@
 #   pattern            run the configurations whose names match one of these shell patterns ('sid*')
 #   -R regex           only the tests whose names match; only what they need is built
 #   -j jobs            compiler processes and tests at once (1; each wants up to 2 GiB)
-#   -f                 run again what was green already for the same sources
+#   -f                 run again what has passed already for the same sources
 #   -l                 list the configurations, run nothing
 #
-# A configuration that was green is not run again until the sources, the tests asked for or the
-# headers have changed. The table is in build/matrix/table.md, of each configuration there are the
-# output of its build and of its tests beside its folder. Exit code: 0 if all that were asked for are
-# green.
+# Tests that have passed are not run again until the sources or the versions change, so that the
+# matrix can be run in parts. The table is in build/matrix/table.md; what compilers and tests printed is
+# beside each configuration's folder. Exit code: 0 if all tests asked for have passed.
 set -euo pipefail
 
 # CGAL and Eigen by the suite of Debian that they come from: 12 is bookworm, 13 trixie, unstable sid.
@@ -139,16 +138,14 @@ eigen_version() {
     "$1/usr/share/eigen3/cmake/Eigen3ConfigVersion.cmake"
 }
 
-# all that a result hangs on
+# all that results hang on: the files and $1
 fingerprint() {
-  local code=(CMakeLists.txt cmake include test examples benchmark)
-  cd "$root"
-  git ls-files -s -- "${code[@]}"
-  git diff HEAD -- "${code[@]}"
-  git ls-files -o --exclude-standard -- "${code[@]}" | while read -r file; do
-    git hash-object "$file"
-  done
-  echo "$* $debug_flags $test_regex"
+  {
+    echo "$1 $debug_flags"
+    cd "$root"
+    find CMakeLists.txt cmake include test examples benchmark -type f -print0 |
+      LC_ALL=C sort -z | xargs -0 sha256sum
+  } | sha256sum
 }
 
 # tests_of <build folder> <regex>
@@ -156,86 +153,119 @@ tests_of() {
   ctest --test-dir "$1" -N -R "$2" | sed -n 's/^ *Test *#[0-9]*: //p'
 }
 
-# the programs that the tests run are called as the tests are
+# targets_of <build folder> <tests>: the programs that tests run are called as the tests are
 targets_of() {
   local known name
   known=$(cmake --build "$1" --target help | sed -n 's/^\.\.\. //p')
-  for name in $(tests_of "$1" "$test_regex"); do
+  for name in $2; do
     grep -x -F -e "$name" -e "${name%_without_data}" <<<"$known" || true
   done | sort -u
+}
+
+# Results are in one file a configuration: the fingerprint, then lines 'versions <columns>',
+# 'known <test>', 'passed <test>', 'failed <test>', 'build <seconds>', 'tests <seconds>' and 'broken <why>'.
+names() {
+  sed -n "s/^$1 //p" "$2" 2>/dev/null | sort -u
+}
+
+forget() {
+  sed -i "/^$1/d" "$2"
+}
+
+configure() {
+  local name=$1 cgal=$2 eigen=$3 compiler=$4 standard=$5 tbb=$6 type=$7
+  if [ ! -e "$work/data/meshes" ] && [ -e /usr/share/doc/libcgal-dev/data.tar.gz ]; then
+    tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$work" data/meshes
+  fi
+  # a cache would keep what was found the last time
+  rm -rf "$work/$name/CMakeCache.txt" "$work/$name/CMakeFiles"
+  cmake -S "$root" -B "$work/$name" -G "Unix Makefiles" \
+    -D CGAL_DIR="$(echo "$cgal"/usr/lib/*/cmake/CGAL)" -D Eigen3_DIR="$eigen/usr/share/eigen3/cmake" \
+    -D CMAKE_CXX_COMPILER="$compiler" -D CMAKE_CXX_STANDARD="$standard" \
+    -D CMAKE_BUILD_TYPE="$type" -D CMAKE_CXX_FLAGS_DEBUG="$debug_flags" \
+    -D RCO_WITH_TBB="$tbb" -D RCO_WERROR=ON -D RCO_DATA_DIR="$work/data/meshes"
 }
 
 run() {
   local name=$1 cgal=$work/headers/$2/libcgal-dev eigen=$work/headers/$3/libeigen3-dev
   local compiler=$4 standard=$5 tbb=$6 type=$7
-  local build=$work/$name result=$work/$name.result
-  local cgal_dir key begin build_time test_time total passed left_out targets
+  local build=$work/$name result=$work/$name.result log=$work/$name
+  local columns key wanted targets begin
   fetch "$2" libcgal-dev
   fetch "$3" libeigen3-dev
-  cgal_dir=$(echo "$cgal"/usr/lib/*/cmake/CGAL)
 
-  local columns
   columns="$name | $(cgal_version "$cgal") | $(eigen_version "$eigen")"
   columns+=" | $compiler $("$compiler" -dumpfullversion -dumpversion) | $standard | $tbb | $type"
-  key=$(fingerprint "$columns" | git hash-object --stdin)
-  if [ "$force" = 0 ] && [ "$(sed -n 1p "$result" 2>/dev/null)" = "green $key" ]; then
-    echo "$name: green already"
+  key=$(fingerprint "$columns")
+  if [ "$force" = 1 ] || [ "$(sed -n 1p "$result" 2>/dev/null)" != "$key" ] ||
+    ! grep -q '^known ' "$result"; then
+    printf '%s\nversions %s\nbroken %s\n' "$key" "$columns" "not configured" >"$result"
+    configure "$name" "$cgal" "$eigen" "$compiler" "$standard" "$tbb" "$type" \
+      >"$log.build.txt" 2>&1 || { tail -20 "$log.build.txt"; return 1; }
+    tests_of "$build" . | sed 's/^/known /' >>"$result"
+    forget broken "$result"
+  fi
+
+  wanted=$(comm -23 <(tests_of "$build" "$test_regex" | sort) <(names passed "$result"))
+  if [ -z "$wanted" ]; then
+    echo "$name: has passed already"
     return 0
   fi
-  echo "$name"
-  rm -f "$result"
-  # written last, unless something fails
-  printf 'red %s\n| %s | %s | | |\n' "$key" "$columns" "does not build" >"$result"
+  echo "$name: $(tr '\n' ' ' <<<"$wanted")"
 
-  if [ ! -e "$work/data/meshes" ] && [ -e /usr/share/doc/libcgal-dev/data.tar.gz ]; then
-    tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$work" data/meshes
-  fi
-  # --fresh is too new for this
-  rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
-  cmake -S "$root" -B "$build" -G "Unix Makefiles" \
-    -D CGAL_DIR="$cgal_dir" -D Eigen3_DIR="$eigen/usr/share/eigen3/cmake" \
-    -D CMAKE_CXX_COMPILER="$compiler" -D CMAKE_CXX_STANDARD="$standard" \
-    -D CMAKE_BUILD_TYPE="$type" -D CMAKE_CXX_FLAGS_DEBUG="$debug_flags" \
-    -D RCO_WITH_TBB="$tbb" -D RCO_WERROR=ON -D RCO_DATA_DIR="$work/data/meshes" \
-    >"$work/$name.build.txt" 2>&1 || { tail -20 "$work/$name.build.txt"; return 1; }
-
-  targets=$(targets_of "$build")
+  forget broken "$result"
+  echo "broken does not build" >>"$result"
+  targets=$(targets_of "$build" "$wanted")
   begin=$SECONDS
   if [ -n "$targets" ]; then
     # shellcheck disable=SC2086 # one word a target
-    cmake --build "$build" --parallel "$jobs" --target $targets >>"$work/$name.build.txt" 2>&1 ||
-      { grep -A 5 -m 5 -E 'error:|Error ' "$work/$name.build.txt"; return 1; }
+    cmake --build "$build" --parallel "$jobs" --target $targets >"$log.build.txt" 2>&1 ||
+      { grep -A 5 -m 5 -E 'error:|Error ' "$log.build.txt"; return 1; }
   fi
-  build_time=$((SECONDS - begin))
+  echo "build $((SECONDS - begin))" >>"$result"
+  forget broken "$result"
   # the compiler would take a header that the newer version no longer has from an installed one
   if find "$build" -name '*.d' -exec grep -l -E ' /usr/include/(CGAL|eigen3)/' {} + | grep .; then
     echo "$name: these were compiled with headers of this system instead of those in $work" >&2
-    printf 'red %s\n| %s | %s | | |\n' "$key" "$columns" "headers of the system" >"$result"
+    echo "broken headers of the system" >>"$result"
     return 1
   fi
 
   begin=$SECONDS
-  ctest --test-dir "$build" -R "$test_regex" --output-on-failure --no-tests=error --parallel "$jobs" \
-    >"$work/$name.tests.txt" 2>&1 || true
-  test_time=$((SECONDS - begin))
-  total=$(tests_of "$build" "$test_regex" | wc -l)
-  left_out=$(($(tests_of "$build" . | wc -l) - total))
-  passed=$(grep -c -E '^ *[0-9]+/[0-9]+ Test +#.* Passed ' "$work/$name.tests.txt" || true)
-  local state=red
-  if [ "$passed" -eq "$total" ] && [ "$total" -gt 0 ]; then
-    state=green
-  else
-    sed -n '/^The following tests/,$p' "$work/$name.tests.txt"
-  fi
-  passed+=" of $total"
-  if [ "$left_out" -gt 0 ]; then passed+=", $left_out not run"; fi
-  printf '%s %s\n| %s | %s | %s min | %s min |\n' "$state" "$key" "$columns" "$passed" \
-    "$(minutes "$build_time")" "$(minutes "$test_time")" >"$result"
-  [ "$state" = green ]
+  # shellcheck disable=SC2086 # one word a test
+  ctest --test-dir "$build" -R "^($(echo $wanted | tr ' ' '|'))\$" --output-on-failure \
+    --parallel "$jobs" >"$log.tests.txt" 2>&1 || true
+  echo "tests $((SECONDS - begin))" >>"$result"
+  local test failed=0
+  for test in $wanted; do
+    forget "failed $test\$" "$result"
+    if grep -q -E "^ *[0-9]+/[0-9]+ Test +#[0-9]+: $test \.+ +Passed " "$log.tests.txt"; then
+      echo "passed $test" >>"$result"
+    else
+      echo "failed $test" >>"$result"
+      failed=1
+    fi
+  done
+  if [ "$failed" = 1 ]; then sed -n '/^The following tests/,$p' "$log.tests.txt"; fi
+  return "$failed"
 }
 
 minutes() {
-  awk -v seconds="$1" 'BEGIN { printf "%.1f", seconds / 60 }'
+  sed -n "s/^$1 //p" "$2" | awk '{ sum += $1 } END { printf "%.1f min", sum / 60 }'
+}
+
+row() {
+  local result=$1 known passed failed status
+  known=$(names known "$result" | wc -l)
+  passed=$(names passed "$result" | wc -l)
+  failed=$(names failed "$result" | wc -l)
+  status=$(names broken "$result")
+  if [ -z "$status" ]; then
+    status="$passed of $known"
+    if [ "$failed" -gt 0 ]; then status+=", $failed failed"; fi
+    if [ $((passed + failed)) -lt "$known" ]; then status+=", the others not run"; fi
+  fi
+  echo "| $(names versions "$result") | $status | $(minutes build "$result") | $(minutes tests "$result") |"
 }
 
 write_table() {
@@ -244,9 +274,7 @@ write_table() {
   echo "|---|---|---|---|---|---|---|---|---|---|"
   for line in "${configurations[@]}"; do
     name=${line%% *}
-    if [ -e "$work/$name.result" ]; then
-      sed -n 2p "$work/$name.result"
-    fi
+    if [ -e "$work/$name.result" ]; then row "$work/$name.result"; fi
   done
 }
 
