@@ -30,7 +30,14 @@ configurations=(
   "trixie-eigen5-gcc-debug       trixie    sid     g++       17   ON   Debug"
 )
 # Debug keeps the assertions of CGAL, Eigen and the package. With -O0 the tests would run for hours.
-debug_flags="-O1"
+# flags_for <build type> <compiler>
+flags_for() {
+  case "$1 $2" in
+    # with -O1 gcc takes a register that Eigen 5 has filled for one that it has not
+    Debug\ g++*) echo "-O1 -Wno-maybe-uninitialized" ;;
+    Debug*) echo "-O1" ;;
+  esac
+}
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 work=$root/build/matrix
@@ -138,10 +145,10 @@ eigen_version() {
     "$1/usr/share/eigen3/cmake/Eigen3ConfigVersion.cmake"
 }
 
-# all that results hang on: the files and $1
+# fingerprint <configuration>: all that results hang on, the files among them
 fingerprint() {
   {
-    echo "$1 $debug_flags"
+    echo "$1"
     cd "$root"
     find CMakeLists.txt cmake include test examples benchmark -type f -print0 |
       LC_ALL=C sort -z | xargs -0 sha256sum
@@ -182,7 +189,7 @@ configure() {
   cmake -S "$root" -B "$work/$name" -G "Unix Makefiles" \
     -D CGAL_DIR="$(echo "$cgal"/usr/lib/*/cmake/CGAL)" -D Eigen3_DIR="$eigen/usr/share/eigen3/cmake" \
     -D CMAKE_CXX_COMPILER="$compiler" -D CMAKE_CXX_STANDARD="$standard" \
-    -D CMAKE_BUILD_TYPE="$type" -D CMAKE_CXX_FLAGS_DEBUG="$debug_flags" \
+    -D CMAKE_BUILD_TYPE="$type" -D CMAKE_CXX_FLAGS_DEBUG="$(flags_for "$type" "$compiler")" \
     -D RCO_WITH_TBB="$tbb" -D RCO_WERROR=ON -D RCO_DATA_DIR="$work/data/meshes"
 }
 
@@ -196,7 +203,7 @@ run() {
 
   columns="$name | $(cgal_version "$cgal") | $(eigen_version "$eigen")"
   columns+=" | $compiler $("$compiler" -dumpfullversion -dumpversion) | $standard | $tbb | $type"
-  key=$(fingerprint "$columns")
+  key=$(fingerprint "$columns $(flags_for "$type" "$compiler")")
   if [ "$force" = 1 ] || [ "$(sed -n 1p "$result" 2>/dev/null)" != "$key" ] ||
     ! grep -q '^known ' "$result"; then
     printf '%s\nversions %s\nbroken %s\n' "$key" "$columns" "not configured" >"$result"
