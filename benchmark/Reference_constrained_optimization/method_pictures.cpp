@@ -7,7 +7,9 @@
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
@@ -19,6 +21,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -90,19 +93,29 @@ std::vector<Vector_3> in_space(const std::vector<Vector_2>& u)
   return points;
 }
 
-// all the way; whoever cannot go stays
-void place(const Flattened_mover& mover, Patch& patch, std::vector<double>& parts)
+// Takes the patch through flattening, Newton steps and acceptance, as often as a visit does. Returns
+// where its vertices end in the plane.
+std::vector<Vector_2> visit(Patch& patch,
+                            const Optimization_state& state,
+                            const RCO::Minimum_angle_energy& energy,
+                            Flattened_mover& mover)
 {
-  const std::vector<Placed_vertex> before = patch.placed;
-  parts.assign(before.size(), 0);
-  for(int v = 0; v < int(before.size()); ++v)
+  Acceptance_test acceptance(nullptr);
+  Acceptance_test::Limits limits;
+  limits.worst = std::numeric_limits<double>::infinity();
+  std::vector<Vector_2> u = mover.flattening().positions;
+  bool proposes = true;
+  for(int pass = 0; proposes && pass < Loop_parameters().proposals_per_patch; ++pass)
   {
-    Placed_vertex moved = before[v];
-    if(!patch.is_free[v] || !mover.place(patch, v, 1, moved))
-      continue;
-    parts[v] = 1;
-    patch.placed[v] = moved;
+    if(!acceptance.decide(patch, state, mover, energy.density(), limits, pass == 0).accepted)
+      break;
+    patch.placed = acceptance.candidate();
+    const std::vector<double>& steps = acceptance.steps();
+    for(std::size_t v = 0; v < u.size(); ++v)
+      u[v] += steps[v] * (mover.target()[v] - u[v]);
+    proposes = mover.propose_again(patch, steps, energy.density());
   }
+  return u;
 }
 
 void write_stages(const std::string& mesh_file,
@@ -118,9 +131,9 @@ void write_stages(const std::string& mesh_file,
   Reference_surface surface(copy);
   const RCO::Minimum_angle_energy energy;
   const Element_set elements(
-    energy, RCO::Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
-                                mean_edge_length(copy.mesh, copy.points), surface.area(),
-                                surface.area()));
+    energy,
+    RCO::Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
+                        mean_edge_length(copy.mesh, copy.points), surface.area(), surface.area()));
   Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
   state.is_free.assign(copy.points.size(), 1);
   RCO::Result unused;
@@ -150,12 +163,8 @@ void write_stages(const std::string& mesh_file,
   if(!mover.propose(patch, energy.density()))
     throw std::runtime_error("nothing can be made of the patch around this seed");
   write(folder + "/patch_flat.off", patch.polygons, in_space(mover.flattening().positions));
-  std::vector<double> parts;
-  place(mover, patch, parts);
-  for(int further = 0; further < 2 && mover.propose_again(patch, parts, energy.density());
-      ++further)
-    place(mover, patch, parts);
-  write(folder + "/patch_optimized.off", patch.polygons, in_space(mover.target()));
+  write(folder + "/patch_optimized.off", patch.polygons,
+        in_space(visit(patch, state, energy, mover)));
   write(folder + "/patch_mapped.off", patch.polygons, positions(patch));
   std::cout << faces.size() << " faces, flattened with a mean density of "
             << mover.flattening().distortion << " (4: isometric)" << std::endl;

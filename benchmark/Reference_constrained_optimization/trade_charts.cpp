@@ -53,8 +53,8 @@ Run run(const Mesh& input, double exponent, const Named_parameters& np)
 {
   Run r;
   r.mesh = input;
-  r.result = CGAL::reference_constrained_optimize(r.mesh, input,
-                                                  RCO::Minimum_angle_energy(exponent), np);
+  r.result =
+    CGAL::reference_constrained_optimize(r.mesh, input, RCO::Minimum_angle_energy(exponent), np);
   r.angles = RCO::angle_statistics(r.mesh);
   const RCO::Drift drift = RCO::drift(r.mesh, input);
   r.drift = (std::max)(drift.relative_mesh_to_reference(), drift.relative_reference_to_mesh());
@@ -73,8 +73,12 @@ const std::string series_marks = "osd^v+";
 
 Svg_scatter::Series series(std::size_t i, const std::string& name, bool is_filled)
 {
-  return {name, series_colours[i % series_colours.size()], series_marks[i % series_marks.size()],
-          is_filled, 2.8, true};
+  return {name,
+          series_colours[i % series_colours.size()],
+          series_marks[i % series_marks.size()],
+          is_filled,
+          2.8,
+          true};
 }
 
 const double no_line = std::numeric_limits<double>::infinity();
@@ -121,8 +125,9 @@ void draw_exponent(const std::vector<Named_mesh>& meshes, const std::string& fil
       }
       names.push_back(series(i, meshes[i].name + (finishes ? "" : ", no finishing"), finishes));
     }
-  Svg_scatter({"A larger exponent is no substitute for the finishing stage", "exponent factor", "", ""},
-              names, panels, 0.9)
+  Svg_scatter(
+    {"A larger exponent is no substitute for the finishing stage", "exponent factor", "", ""},
+    names, panels, 0.9)
     .write(file);
 }
 
@@ -181,8 +186,16 @@ std::vector<double> angles(const Mesh& mesh)
 
 void draw_angles(const Named_mesh& m, const std::string& file)
 {
-  const Svg_histogram::Axis axis = {
-    "Angles of " + m.name, "angle (degrees)", "share of angles", "&#176;", 180, 2, 30, 60, false, 1};
+  const Svg_histogram::Axis axis = {"Angles of " + m.name,
+                                    "angle (degrees)",
+                                    "share of angles",
+                                    "&#176;",
+                                    180,
+                                    2,
+                                    30,
+                                    60,
+                                    false,
+                                    1};
   const Run r = run(m.mesh, 1, CGAL::parameters::default_values());
   Svg_histogram(axis, angles(m.mesh), angles(r.mesh)).write(file);
 }

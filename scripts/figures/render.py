@@ -173,7 +173,7 @@ def distinct_colour(i):
     """colours that differ from those of the numbers around, pale enough for edges to be seen"""
     import colorsys
 
-    r, g, b = colorsys.hsv_to_rgb((0.11 + i * 0.61803) % 1, 0.34 + 0.14 * (i % 3), 0.95)
+    r, g, b = colorsys.hsv_to_rgb((0.11 + i * 0.61803) % 1, 0.5, 1 - 0.16 * (i % 3))
     return (round(255 * r), round(255 * g), round(255 * b))
 
 
@@ -387,8 +387,8 @@ class Picture:
         if panel.flat:
             p.LightingOff()
         else:
-            p.SetAmbient(0.42)
-            p.SetDiffuse(0.62)
+            p.SetAmbient(0.55)
+            p.SetDiffuse(0.5)
             p.SetSpecular(0.0)
         if panel.edge_width > 0:
             p.EdgeVisibilityOn()
