@@ -62,7 +62,7 @@ public:
     in.iterations = (m_bytes.byte() + 2) % 6;
     in.patch_size = m_bytes.flag() ? int(m_bytes.byte()) : 0;
     in.developability_threshold = m_bytes.flag() ? std::abs(m_bytes.number()) : 0.25;
-    in.energy_tolerance = m_bytes.flag() ? std::abs(m_bytes.number()) : 5e-3;
+    in.energy_tolerance = m_bytes.flag() ? std::abs(m_bytes.number()) : 3e-3;
     const unsigned drift = m_bytes.below(4);
     in.drift_bound = drift == 3 ? m_bytes.number() : std::numeric_limits<double>::infinity();
     in.stop_after = m_bytes.flag() ? 1 + 4 * m_bytes.byte() : 0;

@@ -125,7 +125,7 @@ namespace CGAL {
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`5e-3`}
+ *     \cgalParamDefault{`3e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch that is flattened, and about the
