@@ -67,7 +67,8 @@ Options:
   --check                verify what is promised (by ours and plain); exit code 1 if it does not
                          hold
   --format F             table, csv or json
-  -o, --output DIR       write the resulting meshes into this folder (OFF)
+  -o, --output DIR       write the resulting meshes, and those that were made from landmarks to
+                         start from, into this folder (OFF)
   -h, --help             this text
 
 Exit code: 0, 1 if a check failed, 2 if a pair or an option could not be used.
@@ -300,8 +301,12 @@ Row run(const std::string& folder,
       row, method, [&]() { return broken_promises(pair, mesh, defects, visitor.violations); },
       holds);
   if(!o.output_folder.empty())
+  {
     write(mesh, o.output_folder,
           base + "_" + start_name + (s ? "" : "_arap") + (settings.empty() ? "" : "_" + settings));
+    if(start == landmarks_start)
+      write(pair.start, o.output_folder, base + "_start");
+  }
   return row;
 }
 

@@ -1,8 +1,8 @@
 #ifndef RCO_BENCHMARK_SVG_SCATTER_H
 #define RCO_BENCHMARK_SVG_SCATTER_H
 
-// Draws points of several series as an SVG image, in small panels with axes of their own and one
-// legend for all.
+// Draws points of several series, joined by lines on demand, as an SVG image: in small panels with
+// axes of their own and one legend for all.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,8 @@ public:
     std::string name, color;
     char mark; // o circle, s square, d diamond, ^ and v triangles, x and + crosses
     bool is_filled;
-    double size = 3.6; // half the width of the mark
+    double size = 3.6;      // half the width of the mark
+    bool is_joined = false; // by lines, from each point to the next
   };
   struct Point
   {
@@ -233,6 +234,18 @@ private:
     out << "Z\"/>\n";
   }
 
+  void write_joined(
+    std::ostream& out, const Panel& panel, std::size_t series, const Axis& x, const Axis& y) const
+  {
+    out << "<polyline fill=\"none\" stroke=\"" << m_series[series].color
+        << "\" stroke-width=\"1.2\""
+        << (m_series[series].is_filled ? "" : " stroke-dasharray=\"4 3\"") << " points=\"";
+    for(const Point& p : panel.points)
+      if(p.series == series)
+        out << x.at(p.x) << ',' << y.at(p.y) << ' ';
+    out << "\"/>\n";
+  }
+
   void write_panel(std::ostream& out, const Panel& panel, double left, double top) const
   {
     const double infinity = std::numeric_limits<double>::infinity();
@@ -276,6 +289,9 @@ private:
     write_text(out, 0, 0, "middle", m_text.y_label, turned.str());
     if(panel.line >= y.low && panel.line <= y.high)
       write_line(out, begin, y.at(panel.line), end, y.at(panel.line), dashes);
+    for(std::size_t i = 0; i < m_series.size(); ++i)
+      if(m_series[i].is_joined)
+        write_joined(out, panel, i, x, y);
     for(const Point& p : panel.points)
       write_mark(out, m_series[p.series], x.at(p.x), y.at(p.y));
   }

@@ -4,6 +4,7 @@
 //
 //   attribute_transfer [mesh [result.ply]]
 
+#include "face_tree.h"
 #include "input_mesh.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -76,8 +77,9 @@ try
 {
   Mesh mesh;
   read_or_make(argc > 1 ? argv[1] : "", mesh);
-  const bool has_colors = mesh.property_map<Vertex, CGAL::IO::Color>("v:color").second;
-  auto written = mesh.add_property_map<Vertex, CGAL::IO::Color>("v:color").first;
+  const auto added = mesh.add_property_map<Vertex, CGAL::IO::Color>("v:color");
+  const bool has_colors = !added.second; // there were some in the file
+  auto written = added.first;
 
   // the reference has colours; the mesh gets them from it
   Mesh reference = mesh;
@@ -95,7 +97,7 @@ try
     mesh, reference, RCO::Minimum_angle_energy(), CGAL::parameters::vertex_location_map(location));
 
   double from_searched = 0, from_pattern = 0, moved = 0;
-  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Mesh>>> tree;
+  Face_tree<Kernel, Mesh> tree;
   PMP::build_AABB_tree(reference, tree);
   for(const Vertex v : mesh.vertices())
   {

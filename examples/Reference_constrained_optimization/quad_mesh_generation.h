@@ -4,20 +4,14 @@
 #ifndef RCO_EXAMPLE_QUAD_MESH_GENERATION_H
 #define RCO_EXAMPLE_QUAD_MESH_GENERATION_H
 
-#include <CGAL/AABB_face_graph_triangle_primitive.h>
-#include <CGAL/AABB_tree.h>
+#include "face_tree.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/IO/polygon_mesh_io.h>
 #include <CGAL/Polygon_mesh_processing/shape_predicates.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/subdivision_method_3.h>
-#include <CGAL/version.h>
-#if CGAL_VERSION_NR >= 1060000000
-#include <CGAL/AABB_traits_3.h>
-#else
-#include <CGAL/AABB_traits.h>
-#endif
 
 #include <cstddef>
 #include <random>
@@ -47,17 +41,11 @@ inline void write_mesh(const std::string& file, const Mesh& mesh)
 // vertices, as number_of_nonconvex_quads() takes them.
 class Smooth_surface
 {
-  typedef CGAL::AABB_face_graph_triangle_primitive<Mesh> Primitive;
-#if CGAL_VERSION_NR >= 1060000000
-  typedef CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, Primitive>> Tree;
-#else
-  typedef CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> Tree;
-#endif
   typedef Kernel::Point_3 Point;
   typedef Kernel::Vector_3 Vector;
 
   const Mesh& m_triangles;
-  Tree m_tree;
+  Face_tree<Kernel, Mesh> m_tree;
   std::vector<Vector> m_normals; // unit normals at the vertices
 
   static double length(const Vector& v) { return CGAL::approximate_sqrt(v.squared_length()); }

@@ -10,7 +10,6 @@
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
-#include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
@@ -937,7 +936,7 @@ double watched_drift(const Mesh& mesh, const Mesh& reference)
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
   typedef CGAL::AABB_face_graph_triangle_primitive<Mesh> Primitive;
-  typedef CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> Tree;
+  typedef RCO::internal::Primitive_tree<Kernel, Primitive> Tree;
   const Tree to_reference(faces(reference).begin(), faces(reference).end(), reference),
     to_mesh(faces(mesh).begin(), faces(mesh).end(), mesh);
   double largest = 0;

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Tests the command-line program: its three applications, exit codes, formats and reports.
 #
-#   test_rco.sh <rco> <cmake> <README.md> <folder to work in>
+#   test_rco.sh <rco> <cmake> <README.md> <manual> <folder to work in>
 set -uo pipefail
 
 rco=$1
 cmake=$2
 readme=$3
+manual=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-rm -rf "$4" && mkdir -p "$4" && cd "$4" || exit 1
+rm -rf "$5" && mkdir -p "$5" && cd "$5" || exit 1
 
 failures=0
 fail() {
@@ -244,7 +245,7 @@ expect 5 angle aside.off --reference triangles.off --json
 json_is outcome 'refused input'
 grep -q vertex err || fail "no vertex is named"
 
-# ---- the lines of README and of the help, on meshes of ours under those names
+# ---- the lines of README, of the manual and of the help, on meshes of ours under those names
 mkdir -p lines && cd lines || exit 1
 cp ../triangles.off elephant.off
 expect 0 angle elephant.off -o part.stl --number-of-iterations 1
@@ -257,8 +258,10 @@ for command in angle quad map; do
   "$rco" "$command" --help | grep -E '^  rco .*\.'
 done | sed 's/^  rco/rco/' >lines.txt
 [ "$(wc -l <lines.txt)" -ge 8 ] || fail "too few examples in the help"
-grep '^rco ' "$readme" >>lines.txt
-[ "$(grep -c '^rco ' "$readme")" -ge 3 ] || fail "too few lines in README"
+for text in "$readme" "$manual"; do
+  grep '^rco ' "$text" >>lines.txt
+  [ "$(grep -c '^rco ' "$text")" -ge 3 ] || fail "too few lines in $text"
+done
 # those that make a file come before those that read it, and leave nothing to do then
 while read -r _ words; do
   # shellcheck disable=SC2086

@@ -23,7 +23,9 @@ struct Loop_parameters
   double drift_bound = -1; // a length; negative: see Outer_loop::initialize_drift_guard
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 5e-3;
-  double movement_tolerance = 0.003; // part of the mean edge length at a vertex
+  // Part of the mean edge length at a vertex: where all around move less it is calm. Small ways of many
+  // together may lead far, which is why two rings are looked at.
+  double movement_tolerance = 0.02;
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last

@@ -131,6 +131,8 @@ public:
 
   double motion_length(int v) const { return m_motion[v].norm(); }
   double optimization_time() const { return m_optimization_time; }
+  // the gain that the last proposal promised
+  double promised() const { return m_promised; }
 
 private:
   // Newton steps from where the vertices are now
@@ -140,7 +142,10 @@ private:
     linearize(patch, density);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
     m_newton.set_strain_resistance(m_strain_resistance);
-    return m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8).steps > 0;
+    const Projected_newton::Outcome outcome =
+      m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8);
+    m_promised = outcome.promised;
+    return outcome.steps > 0;
   }
 
   // the next step may be bolder if nearly all of the last one was taken, and must be more careful if
@@ -253,6 +258,7 @@ private:
   std::vector<Vector_2> m_motion;      // per vertex, in its frame
   std::vector<char> m_is_held;         // per vertex: it stays on the crease of R that it is on
   double m_optimization_time = 0;
+  double m_promised = 0;
 };
 
 } // namespace internal

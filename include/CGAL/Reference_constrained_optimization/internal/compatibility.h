@@ -25,25 +25,36 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #endif
+#if CGAL_VERSION_NR >= 1060200000
+#include <CGAL/boost/graph/border.h>
+#else
+#include <CGAL/Polygon_mesh_processing/border.h>
+#endif
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
 #if CGAL_VERSION_NR >= 1060000000
+template <typename Kernel, typename Primitive>
+using Primitive_tree = CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, Primitive>>;
 template <typename Kernel, typename Iterator>
-using Triangle_tree =
-  CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, CGAL::AABB_triangle_primitive_3<Kernel, Iterator>>>;
+using Triangle_tree = Primitive_tree<Kernel, CGAL::AABB_triangle_primitive_3<Kernel, Iterator>>;
 template <typename Kernel, typename Iterator>
-using Segment_tree =
-  CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, CGAL::AABB_segment_primitive_3<Kernel, Iterator>>>;
+using Segment_tree = Primitive_tree<Kernel, CGAL::AABB_segment_primitive_3<Kernel, Iterator>>;
 #else
+template <typename Kernel, typename Primitive>
+using Primitive_tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 template <typename Kernel, typename Iterator>
-using Triangle_tree =
-  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Iterator>>>;
+using Triangle_tree = Primitive_tree<Kernel, CGAL::AABB_triangle_primitive<Kernel, Iterator>>;
 template <typename Kernel, typename Iterator>
-using Segment_tree =
-  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, Iterator>>>;
+using Segment_tree = Primitive_tree<Kernel, CGAL::AABB_segment_primitive<Kernel, Iterator>>;
+#endif
+
+#if CGAL_VERSION_NR >= 1060200000
+using CGAL::extract_boundary_cycles;
+#else
+using CGAL::Polygon_mesh_processing::extract_boundary_cycles;
 #endif
 
 } // namespace internal

@@ -177,7 +177,7 @@ private:
       m_visitor.on_iteration_begin(i);
       m_moved.assign(mesh.number_of_vertices(), 0);
       m_has_refused = false;
-      m_taken = m_could_move = 0;
+      m_taken = m_could_move = m_missed = 0;
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
@@ -202,9 +202,9 @@ private:
       if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
-          m_is_active = faces_around<ConcurrencyTag>(mesh, m_moved, 1);
+          m_is_active = faces_around<ConcurrencyTag>(mesh, m_moved, 2);
       }
-      else if(!divide_further())
+      else if(!has_fallen(after.capped_energy + m_missed, after.capped_energy) || !divide_further())
       {
         m_result.status = Status::converged;
         return true;
@@ -507,6 +507,7 @@ private:
     {
       m_taken += s.taken * s.number_of_free_vertices;
       m_could_move += s.number_of_free_vertices;
+      m_missed += s.missed;
     }
     m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
 
@@ -539,6 +540,7 @@ private:
   Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits;
   double m_taken = 0, m_could_move = 0; // in this iteration on the surface: of whole steps
+  double m_missed = 0; // in this iteration on the surface: what whole steps had promised
   bool m_has_refused = false;
   bool m_is_finishing = false;
   std::size_t m_next_to_flatten = 0; // iteration

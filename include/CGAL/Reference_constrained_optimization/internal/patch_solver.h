@@ -42,6 +42,7 @@ struct Solved_patch
   bool is_flattened = false;
   bool overlaps = false;
   double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
+  double missed = 0; // the gain that the last proposal promised, as far as it was not taken
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
   std::size_t number_of_faces = 0, number_of_free_vertices = 0; // of the patch; 0: was not solved
@@ -120,6 +121,7 @@ public:
       m_on_surface_mover.set_strain_resistance(limits.strain_resistance);
       improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
               limits, s);
+      s.missed = (1 - s.taken) * m_on_surface_mover.promised();
     }
     finish(state, drift_guard, s);
   }

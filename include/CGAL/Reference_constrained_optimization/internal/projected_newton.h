@@ -43,6 +43,7 @@ public:
   {
     int steps = 0;
     double initial_energy = 0, final_energy = 0;
+    double promised = 0; // what the first step would gain, undamped, if the energy were quadratic
   };
 
   // numbers the unknowns of a problem and factorizes its pattern; `minimize` may then be called any
@@ -96,6 +97,8 @@ public:
       if(!m_system.solve(m_right, m_direction, m_interruption))
         break;
       check(m_interruption);
+      if(step == 0)
+        outcome.promised = 0.5 * m_right.dot(m_direction);
       damp(problem, u);
       const double decrease = m_right.dot(m_direction);
       if(!(decrease > tolerance * m_scale))

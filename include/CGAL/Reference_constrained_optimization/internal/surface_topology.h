@@ -7,8 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/Cut_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
 
-#include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 
 #include <boost/property_map/property_map.hpp>
@@ -58,7 +58,7 @@ inline bool is_sphere(const Mesh_copy& copy, const Cut_surface& surface, const s
     throw Invalid_input(name + ": has " + std::to_string(components) +
                         " connected components, but must have one");
   std::vector<Cut_surface::Halfedge> borders;
-  PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));
+  extract_boundary_cycles(mesh, std::back_inserter(borders));
   int vertices = 0;
   for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
     vertices += copy.mesh.vertex_begin[v] < copy.mesh.vertex_begin[v + 1];
