@@ -172,18 +172,22 @@ void test_folded_quads()
   }
 }
 
-// Faces without area hold points that no other face has: here lines of several faces, one of them on
-// top of another, beside a body.
+// Faces without area, or with so little that it underflows, hold points that no other face has: here
+// lines of several faces, one of them on top of another, beside a body.
 void test_hairs()
 {
-  Shape hairs;
-  for(const double x : {0., 1., 3., 0.5, 2., 1.})
-    hairs.add(x, 2 * x, -x);
-  hairs.triangle(0, 1, 3);
-  hairs.triangle(1, 2, 4);
-  hairs.triangle(2, 1, 5);
-  test_closest(joined(tetrahedron(), hairs, Vector_3(0.5, 0, 0)), "hairs");
-  test_closest(joined(hairs, icosphere(1), Vector_3(0.5, 0, 0)), "hairs through a sphere");
+  for(const double width : {0., 1e-317, 1e-160, 1e-16})
+  {
+    Shape hairs;
+    for(const double x : {0., 1., 3., 0.5, 2., 1.})
+      hairs.add(x, 2 * x, 0);
+    hairs.points[1].z() = hairs.points[3].z() = width;
+    hairs.triangle(0, 1, 3);
+    hairs.triangle(1, 2, 4);
+    hairs.triangle(2, 1, 5);
+    test_closest(joined(tetrahedron(), hairs, Vector_3(0.5, 0, 0)), "hairs");
+    test_closest(joined(hairs, icosphere(1), Vector_3(0.5, 0, 0)), "hairs through a sphere");
+  }
 }
 
 // on a convex surface there is one local minimum for a point outside

@@ -13,6 +13,7 @@
 
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -150,13 +151,17 @@ public:
   Surface_point closest(const Vector_3& p) const
   {
     const Search& s = search();
-    return closest_of_hairs(p, closest_of(p, s.tree.closest_point_and_primitive(kernel_point(p))));
+    return closest_of_hairs(
+      p, s.triangles.empty() ? Surface_point()
+                             : closest_of(p, s.tree.closest_point_and_primitive(kernel_point(p))));
   }
 
   // the same where a point of R is known already: the tree looks only at what is closer
   Surface_point closest(const Vector_3& p, const Surface_point& known) const
   {
     const Search& s = search();
+    if(s.triangles.empty())
+      return closest_of_hairs(p, known);
     const auto hit = s.tree.closest_point_and_primitive(
       kernel_point(p), {kernel_point(known.position), Triangle_iterator(s.triangles.end())});
     return closest_of_hairs(
@@ -235,8 +240,8 @@ private:
     std::vector<Kernel::Triangle_3> triangles;
     std::vector<int> face; // per triangle
     Triangle_tree<Kernel, Triangle_iterator> tree;
-    // Faces without area confuse such a tree. What they hold that no face with area does: their
-    // longest sides, where the face behind has none, either.
+    // Faces with next to no area confuse such a tree. What they hold that no other face does, up to
+    // rounding: their longest sides, where the face behind is like that, too.
     std::vector<Kernel::Segment_3> hairs;
     std::vector<int> hair_face;
     Segment_tree<Kernel, Segment_iterator> hair_tree;
@@ -260,7 +265,7 @@ private:
     return closest_in_face(p, s.face[hit.second - Triangle_iterator(s.triangles.begin())]);
   }
 
-  // the closest point of a hair if that is closer by more than rounding, else the known one
+  // the closest point of a hair if that is closer by more than rounding, or there is none known
   Surface_point closest_of_hairs(const Vector_3& p, const Surface_point& known) const
   {
     const Search& s = *m_search;
@@ -270,34 +275,29 @@ private:
     const int face = s.hair_face[hit.second - Segment_iterator(s.hairs.begin())];
     const Surface_point on_hair = closest_in_face(p, face);
     const double rounding = 1e-14 * m_diagonal;
-    return (on_hair.position - p).norm() + rounding < (known.position - p).norm() ? on_hair : known;
+    return known.face < 0 || (on_hair.position - p).norm() + rounding < (known.position - p).norm()
+             ? on_hair
+             : known;
   }
 
   void build_tree() const
   {
     Search& s = *m_search;
-    const auto triangle = [&](int f) {
-      return Kernel::Triangle_3(kernel_point(corner_point(f, 0)), kernel_point(corner_point(f, 1)),
-                                kernel_point(corner_point(f, 2)));
-    };
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
-      const Kernel::Triangle_3 t = triangle(f);
-      if(!t.is_degenerate())
+      const Kernel::Point_3 p[3] = {kernel_point(corner_point(f, 0)),
+                                    kernel_point(corner_point(f, 1)),
+                                    kernel_point(corner_point(f, 2))};
+      if(!is_thin(f))
       {
-        s.triangles.push_back(t);
+        s.triangles.emplace_back(p[0], p[1], p[2]);
         s.face.push_back(f);
         continue;
       }
-      int i = 0;
-      for(const int k : {1, 2})
-        if(side_length(f, k) > side_length(f, i))
-          i = k;
-      const int behind = m_mesh.opposite[m_mesh.face_begin[f] + i];
-      if(side_length(f, i) > 0 &&
-         (behind < 0 || triangle(m_mesh.corner_face[behind]).is_degenerate()))
+      const int i = longest_side(f), behind = m_mesh.opposite[m_mesh.face_begin[f] + i];
+      if(side_length(f, i) > 0 && (behind < 0 || is_thin(m_mesh.corner_face[behind])))
       {
-        s.hairs.emplace_back(t[i], t[i + 1]);
+        s.hairs.emplace_back(p[i], p[(i + 1) % 3]);
         s.hair_face.push_back(f);
       }
     }
@@ -307,6 +307,23 @@ private:
     s.hair_tree.insert(s.hairs.begin(), s.hairs.end());
     s.hair_tree.build();
     s.hair_tree.accelerate_distance_queries();
+  }
+
+  // whether rounding has a say in where the plane of a face is, or its square underflows
+  bool is_thin(int f) const
+  {
+    const double length = side_length(f, longest_side(f));
+    const double rounding = 1e-14, smallest = 1e-150;
+    return !(face_normal(f).norm() > (std::max)(rounding * length * length, smallest));
+  }
+
+  int longest_side(int f) const
+  {
+    int i = 0;
+    for(const int k : {1, 2})
+      if(side_length(f, k) > side_length(f, i))
+        i = k;
+    return i;
   }
 
   double side_length(int f, int i) const
