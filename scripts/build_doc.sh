@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the manual into build/doc/html with Doxygen. Warnings are shown and kept in
-# build/doc/warnings.txt; --strict turns them into a failure.
+# build/doc/warnings.txt; --strict turns them, and links to what is not there, into a failure.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,6 +20,11 @@ mkdir -p build/doc
 } | doxygen - >build/doc/doxygen.log
 cat build/doc/warnings.txt >&2
 echo "The manual is build/doc/html/index.html"
-if [ "${1:-}" = --strict ] && [ -s build/doc/warnings.txt ]; then
+is_clean=1
+[ ! -s build/doc/warnings.txt ] || is_clean=0
+if command -v python3 >/dev/null; then
+  python3 scripts/check_links.py build/doc/html >&2 || is_clean=0
+fi
+if [ "${1:-}" = --strict ] && [ "$is_clean" = 0 ]; then
   exit 1
 fi

@@ -117,7 +117,7 @@ void draw_exponent(const std::vector<Named_mesh>& meshes, const std::string& fil
   for(std::size_t i = 0; i < meshes.size(); ++i)
     for(const bool finishes : {true, false})
     {
-      for(const double factor : {1, 2, 4})
+      for(const double factor : {1, 2, 5})
       {
         const Run r = run(meshes[i].mesh, factor, CGAL::parameters::use_finishing_stage(finishes));
         panels[0].points.push_back({names.size(), factor, r.angles.minimum});

@@ -62,10 +62,10 @@ int main(int argc, char* argv[])
     for(const Mesh::Vertex_index v : mesh.vertices())
       moved += mesh.point(v) != reference.point(v);
     std::cout << faces.size() << " of " << mesh.number_of_faces() << " faces, " << moved << " of "
-              << mesh.number_of_vertices() << " vertices moved; mean energy " << result.initial_energy
-              << " before, " << result.final_energy << " after; mean of the smallest angles "
-              << RCO::angle_statistics(reference).mean << " before, "
-              << RCO::angle_statistics(mesh).mean << " after" << std::endl;
+              << mesh.number_of_vertices() << " vertices moved; mean energy "
+              << result.initial_energy << " before, " << result.final_energy
+              << " after; mean of the smallest angles " << RCO::angle_statistics(reference).mean
+              << " before, " << RCO::angle_statistics(mesh).mean << " after" << std::endl;
     if(argc > 2 && !CGAL::IO::write_polygon_mesh(argv[2], mesh))
       throw std::runtime_error(std::string("cannot write ") + argv[2]);
   }

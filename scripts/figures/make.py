@@ -82,6 +82,8 @@ ANGLE_MESHES = {
     "bull": (30, 20, "y"),
     "camel": (20, 10, "y"),
     "cow": (30, 20, "y"),
+    "elephant": (60, 20, "y"),
+    "fandisk": (30, 20, "y"),
     "head": (60, 10, "y"),
     "homer": (20, 10, "y"),
     "knot": (20, 30, "y"),
@@ -94,8 +96,8 @@ ANGLE_MESHES = {
 QUAD_MESHES = {
     "3torus": (30, 20, "y"),
     "double-torus-example": (30, 70, "y"),
-    "elephant": (60, 20, "y"),
     "knot": (20, 30, "y"),
+    "torus_quad": (30, 30, "y"),
 }
 
 # source, reference, and where to look at them from
@@ -120,9 +122,9 @@ def make_quads(name):
         quads = quads_of_grid(mesh)
     else:
         quads = mesh
-        for _ in range({"3torus": 3, "double-torus-example": 2, "elephant": 1}[name]):
+        for _ in range({"3torus": 3, "double-torus-example": 2, "torus_quad": 3}[name]):
             quads = catmull_clark(quads)
-    return (quads if name == "elephant" else shaken(quads, 0.8)), quads
+    return shaken(quads, 0.6), quads
 
 
 def optimize_quads():
@@ -161,7 +163,7 @@ def optimize_maps():
 TEXT = 24  # pixels below a panel
 
 
-def write_picture(picture, name, colors=255):
+def write_picture(picture, name, colors=128):
     file = os.path.join(FIGURES, name + ".png")
     picture.write(file)
     run("pngquant", "--force", "--skip-if-larger", "--speed", "1", "--nofs", "--output", file,
@@ -223,7 +225,7 @@ def quad_picture():
     after = read(os.path.join(WORK, "quad/3torus.off"))
     view = View(after, *QUAD_MESHES["3torus"])
     right, up = view.right_and_up()
-    focus = [f + view.radius * (0.5 * a - 0.3 * b) for f, a, b in zip(view.focus, right, up)]
+    focus = [f + view.radius * (0.2 * b - 0.42 * a) for f, a, b in zip(view.focus, right, up)]
     texts = [f"{int(r['nonconvex_' + w])} not convex, {int(r['folds_' + w])} folds" for w in ("in", "out")]
     before_and_after("quad_before_after", before, after, view,
                      view.nearby(focus, 0.36 * view.radius), corner_colours, CORNER_SCALE,
@@ -246,18 +248,35 @@ def map_picture():
                       f"optimized: {r['distortion_mean_out']:.2f}"))
 
 
+def refined(mesh):
+    """every triangle in four"""
+    points, at, faces = list(mesh.points), {}, []
+
+    def middle(a, b):
+        key = (min(a, b), max(a, b))
+        if key not in at:
+            at[key] = len(points)
+            points.append(tuple(0.5 * (x + y) for x, y in zip(points[a], points[b])))
+        return at[key]
+
+    for a, b, c in mesh.faces:
+        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+        faces += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return Mesh(points, faces)
+
+
 def checker(mesh):
-    """a colour for every face, by its place"""
-    low = [min(p[i] for p in mesh.points) for i in range(3)]
-    high = [max(p[i] for p in mesh.points) for i in range(3)]
+    """a colour for every face, by its place in front of the mesh"""
+    low = [min(p[i] for p in mesh.points) for i in range(2)]
+    high = [max(p[i] for p in mesh.points) for i in range(2)]
     longest = max(h - l for l, h in zip(low, high))
     result = []
     for f in mesh.faces:
-        center = [sum(mesh.points[v][i] for v in f) / len(f) for i in range(3)]
-        cells = sum(int(10 * (c - l) / longest) for c, l in zip(center, low))
-        share = [(c - l) / (h - l) for c, l, h in zip(center, low, high)]
-        shade = 0.5 if cells % 2 else 1
-        result.append(tuple(round(shade * (70 + 180 * s)) for s in share))
+        center = [sum(mesh.points[v][i] for v in f) / len(f) for i in range(2)]
+        cells = sum(int(12 * (c - l) / longest) for c, l in zip(center, low))
+        s, t = ((c - l) / (h - l) for c, l, h in zip(center, low, high))
+        shade = 0.55 if cells % 2 else 1
+        result.append(tuple(round(shade * x) for x in (90 + 160 * s, 130 + 90 * t, 250 - 160 * s)))
     return result
 
 
@@ -265,10 +284,10 @@ def checker_picture():
     optimize_maps()
     size = 330
     names = ("source", "from seven landmarks", "optimized")
-    source = read(data("bear"))
-    paint = checker(source)
-    meshes = (source, read(os.path.join(WORK, "map/bear_bear_bis_start.off")),
-              read(os.path.join(WORK, "map/bear_bear_bis_landmarks.off")))
+    meshes = [refined(refined(read(file))) for file in (
+        data("bear"), os.path.join(WORK, "map/bear_bear_bis_start.off"),
+        os.path.join(WORK, "map/bear_bear_bis_landmarks.off"))]
+    paint = checker(meshes[0])
     picture = Picture(3 * size, size + TEXT)
     for i, (mesh, text) in enumerate(zip(meshes, names)):
         look = View(mesh, *PAIRS["bear_bear_bis"][2 if i == 0 else 3])
@@ -277,7 +296,12 @@ def checker_picture():
     write_picture(picture, "compatible_checker")
 
 
-def gallery(name, pairs, paint, scale, columns, size=210, edge_width=0.3):
+def edge_width_of(mesh):
+    """where edges are a few pixels long, they would hide the colours"""
+    return 0.3 if len(mesh.faces) < 18000 else 0
+
+
+def gallery(name, pairs, paint, scale, columns, size):
     """pairs of (text, before, after, view before, view after), each two panels beside each other"""
     lines = (len(pairs) + columns - 1) // columns
     gap = 16
@@ -287,12 +311,12 @@ def gallery(name, pairs, paint, scale, columns, size=210, edge_width=0.3):
         x = width * (i % columns) + gap / 2
         y = picture.height - (size + TEXT) * (i // columns + 1) + TEXT
         for k, (mesh, view) in enumerate(((before, first), (after, second))):
-            picture.add(Panel(mesh, view, colours=paint(mesh, i), edge_width=edge_width), x + k * size,
-                        y, size, size)
+            picture.add(Panel(mesh, view, colours=paint(mesh), edge_width=edge_width_of(mesh)),
+                        x + k * size, y, size, size)
         picture.text(x + size, y - 16, text)
     good, bad, label = scale
     picture.scale(picture.width / 2 - 130, 18, 260, good, bad, label)
-    write_picture(picture, name, 128)
+    write_picture(picture, name)
 
 
 def angle_gallery():
@@ -302,7 +326,7 @@ def angle_gallery():
         before, after = read(data(name)), read(os.path.join(WORK, "angle", name + ".off"))
         view = View(before, *ANGLE_MESHES[name])
         pairs.append((name, before, after, view, view))
-    gallery("gallery_angle", pairs, lambda m, i: angle_colours(m), ANGLE_SCALE, 3, size=180)
+    gallery("gallery_angle", pairs, angle_colours, ANGLE_SCALE, 4, 142)
 
 
 def quad_gallery():
@@ -310,24 +334,32 @@ def quad_gallery():
     optimize_quads()
     for name in QUAD_MESHES:
         before = read(os.path.join(WORK, "quad_input", name + ".off"))
-        kind = "quad_angle" if name == "elephant" else "quad"
-        after = read(os.path.join(WORK, kind, name + ".off"))
+        after = read(os.path.join(WORK, "quad", name + ".off"))
         view = View(after, *QUAD_MESHES[name])
         pairs.append((name, before, after, view, view))
-    gallery("gallery_quad", pairs, lambda m, i: corner_colours(m), CORNER_SCALE, 2, size=250)
+    gallery("gallery_quad", pairs, corner_colours, CORNER_SCALE, 2, 250)
 
 
 def map_gallery():
-    optimize_maps()
-    pairs, sources = [], []
-    for pair, (source, reference, first, second) in PAIRS.items():
-        before = read(os.path.join(WORK, "map", pair + "_start.off"))
-        after = read(os.path.join(WORK, "map", pair + "_landmarks.off"))
-        view = View(after, *second)
-        sources.append(read(data(source)))
-        pairs.append((f"{source} on {reference}", before, after, view, view))
-    gallery("gallery_map", pairs,
-            lambda m, i: colours(distortions(m, sources[i]), 2, 5), DISTORTION_SCALE, 3, size=180)
+    all_rows = optimize_maps()
+    size = 250
+    picture = Picture(3 * size, len(PAIRS) * (size + TEXT) + 44)
+    for i, (pair, (source, reference, first, second)) in enumerate(PAIRS.items()):
+        r = row_of(all_rows, "pair", pair)
+        y = picture.height - (size + TEXT) * (i + 1) + TEXT
+        meshes = (read(data(source)), read(os.path.join(WORK, "map", pair + "_start.off")),
+                  read(os.path.join(WORK, "map", pair + "_landmarks.off")))
+        texts = (source, f"on {reference}: {r['distortion_mean_in']:.2f}",
+                 f"optimized: {r['distortion_mean_out']:.2f}")
+        for k, (mesh, text) in enumerate(zip(meshes, texts)):
+            picture.add(
+                Panel(mesh, View(meshes[min(k, 1)], *(second if k else first)), text=text,
+                      colours=colours(distortions(mesh, meshes[0]), 2, 5),
+                      edge_width=edge_width_of(mesh)),
+                k * size, y, size, size)
+    good, bad, label = DISTORTION_SCALE
+    picture.scale(picture.width / 2 - 130, 18, 260, good, bad, label)
+    write_picture(picture, "gallery_map")
 
 
 # ---- the method -----------------------------------------------------------------------------
