@@ -8,10 +8,9 @@
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/Round_solver.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
-#include <CGAL/Reference_constrained_optimization/internal/commit_round.h>
 #include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
-#include <CGAL/Reference_constrained_optimization/internal/for_each_patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
@@ -61,9 +60,7 @@ public:
                         small_patch_size(parameters.selection, state.mesh),
                         largest_patch_size(parameters.selection)),
       m_rounds(state.mesh, parameters.halo),
-      m_for_each([&state, &parameters, &interruption]() {
-        return Patch_solver(state, parameters, &interruption);
-      })
+      m_round_solver(state, m_parameters, visitor, result, interruption)
   {}
 
   // the state holds what was accepted, also when it is cut short or a visitor throws
@@ -88,8 +85,8 @@ private:
   {
     if(m_interruption.has_stopped())
       m_result.status = m_interruption.status();
-    if(m_drift_guard.is_on())
-      m_result.drift = m_drift_guard.drift<ConcurrencyTag>(m_state);
+    if(m_round_solver.drift_guard().is_on())
+      m_result.drift = m_round_solver.drift_guard().template drift<ConcurrencyTag>(m_state);
   }
 
   void optimize()
@@ -111,15 +108,8 @@ private:
     before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
     m_initial_energy = before.energy;
 
-    std::vector<Vector_3> points(mesh.number_of_vertices());
-    for(int v = 0; v < mesh.number_of_vertices(); ++v)
-      points[v] = m_state.vertices[v].position;
     m_interruption.check();
-    initialize_drift_guard();
-    m_interruption.check();
-    m_geometry.update(mesh, points);
-    m_interruption.check();
-    m_edge_length = vertex_edge_lengths(mesh, points);
+    m_round_solver.initialize(make_drift_guard());
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
     m_prizes_angles = prizes_angles(m_state.elements);
 
@@ -134,24 +124,24 @@ private:
   // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
   // Flattened patches alone see the barrier only where it is felt already, and stall in front of it: for
   // them it has to be asked for.
-  void initialize_drift_guard()
+  Drift_guard make_drift_guard()
   {
+    Drift_guard guard;
     const double bound = m_parameters.drift_bound;
     if(bound > (std::numeric_limits<double>::max)() ||
        (bound < 0 && !m_parameters.use_on_surface_steps))
-      return;
+      return guard;
     const Indexed_mesh& mesh = m_state.mesh;
     const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
     double triangles = 0;
     for(int f = 0; f < mesh.number_of_faces(); ++f)
       triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
     const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
-    Drift_guard guard; // of no use if that is cut short
     guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
                                      bound < 0, barrier, &m_interruption);
-    m_drift_guard = std::move(guard);
-    m_result.drift_bound = m_drift_guard.bound();
-    m_result.initial_drift = m_drift_guard.initial_drift();
+    m_result.drift_bound = guard.bound();
+    m_result.initial_drift = guard.initial_drift();
+    return guard;
   }
 
   // calls a visit; false if that was cut short
@@ -175,9 +165,7 @@ private:
     for(std::size_t i = 0; i < m_parameters.number_of_iterations; ++i)
     {
       m_visitor.on_iteration_begin(i);
-      m_moved.assign(mesh.number_of_vertices(), 0);
-      m_has_refused = false;
-      m_taken = m_could_move = m_missed = 0;
+      m_round_solver.begin_iteration();
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
@@ -185,26 +173,29 @@ private:
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
-      if(m_could_move > 0)
+      const auto& progress = m_round_solver.progress();
+      if(progress.could_move > 0)
         m_limits.strain_resistance =
-          (std::min)(largest_resistance,
-                     adapted_resistance(m_limits.strain_resistance, m_taken / m_could_move));
+          (std::min)(largest_resistance, adapted_resistance(m_limits.strain_resistance,
+                                                            progress.taken / progress.could_move));
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
       const bool repairs =
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
+      std::vector<char> moved = progress.moved;
       if(!falls && repairs)
         keep_near_bad<ConcurrencyTag>(m_state, m_density, m_limits.bad,
-                                      m_moved); // all is well elsewhere
-      const bool moves = std::find(m_moved.begin(), m_moved.end(), char(1)) != m_moved.end();
+                                      moved); // all is well elsewhere
+      const bool moves = std::find(moved.begin(), moved.end(), char(1)) != moved.end();
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
       before = after;
       if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
-          m_is_active = faces_around<ConcurrencyTag>(mesh, m_moved, 2);
+          m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       }
-      else if(!has_fallen(after.capped_energy + m_missed, after.capped_energy) || !divide_further())
+      else if(!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
+              !divide_further())
       {
         m_result.status = Status::converged;
         return true;
@@ -219,7 +210,8 @@ private:
   {
     const int smallest = 1000, parts = 4;
     const int size = m_partition.patch_size() / parts;
-    const bool is_held_up = m_has_refused || m_taken < 0.8 * m_could_move;
+    const auto& progress = m_round_solver.progress();
+    const bool is_held_up = progress.has_refused || progress.taken < 0.8 * progress.could_move;
     if(!m_parameters.use_on_surface_steps || !is_held_up || size < smallest)
       return false;
     m_partition.set_patch_size(size);
@@ -246,7 +238,7 @@ private:
       },
       [&]() { patches = divide(m_is_active, m_partition); });
     return (!flattens || visit(is_wanted, m_selection)) && !m_interruption.stops() &&
-           solve_round(patches, Moves::on_surface, m_density);
+           m_round_solver.solve(patches, Moves::on_surface, m_density, m_limits);
   }
 
   // the active faces that are turned over or folded or in bad regions, and those around them
@@ -351,10 +343,10 @@ private:
   void finish_angles()
   {
     const Acceptance_test::Limits limits = m_limits;
-    m_is_finishing = true;
+    m_round_solver.set_finishing(true);
     m_interruption.check();
     m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
-    Saved_state saved(m_state, m_drift_guard);
+    Saved_state saved(m_state, m_round_solver.drift_guard());
     using Stage = Finishing_stage<ConcurrencyTag>;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
     const auto energy = [&](int f) {
@@ -382,7 +374,7 @@ private:
       throw;
     }
     m_limits = limits;
-    m_is_finishing = false;
+    m_round_solver.set_finishing(false);
   }
 
   // visits the wanted faces, in patches that are flattened or not, until all are touched; false if it
@@ -404,12 +396,12 @@ private:
       if(m_interruption.stops())
         return false;
       const auto start = std::chrono::steady_clock::now();
-      const std::vector<std::vector<int>> patches =
-        m_rounds.select(seeds, m_is_untouched, selection, m_geometry, &m_interruption);
+      const std::vector<std::vector<int>> patches = m_rounds.select(
+        seeds, m_is_untouched, selection, m_round_solver.geometry(), &m_interruption);
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!solve_round(patches, Moves::flattened, m_density))
+      if(!m_round_solver.solve(patches, Moves::flattened, m_density, m_limits))
         return false;
     }
   }
@@ -434,92 +426,7 @@ private:
     const std::vector<std::vector<int>> patches =
       m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
-    return solve_round(patches, moves, density);
-  }
-
-  // false if it was cut short; what was solved by then is committed
-  template <typename AnyDensity>
-  bool
-  solve_round(const std::vector<std::vector<int>>& patches, Moves moves, const AnyDensity& density)
-  {
-    m_visitor.on_round_begin(patches.size());
-    ++m_result.number_of_rounds;
-    std::vector<Solved_patch> solved(patches.size());
-    m_for_each(
-      patches.size(),
-      [&](Patch_solver& solver, std::size_t i) {
-        if(m_interruption.stops())
-          return;
-        try
-        {
-          solver.solve(patches[i], m_state, density, m_limits, m_drift_guard, moves, solved[i]);
-        }
-        catch(const Interrupted&)
-        {
-          solved[i] = Solved_patch(); // as if it had not been begun
-        }
-      },
-      [&]() { m_interruption.stops(); });
-    commit_round(
-      m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
-      [&](const Solved_patch& s) { update(s); });
-    m_visitor.on_round_end();
-    return !m_interruption.has_stopped();
-  }
-
-  // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
-  // vertices
-  void update(const Solved_patch& s)
-  {
-    const Patch& patch = s.patch;
-    for(const std::vector<int>* vertices : {&s.outer_vertices, &s.inner_vertices})
-      for(const int i : *vertices)
-      {
-        const int v = patch.vertices[i];
-        const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
-        if(moved > m_parameters.movement_tolerance * m_edge_length[v])
-          m_moved[v] = 1;
-      }
-    for(const int f : patch.faces)
-      m_geometry.set(m_state.mesh, f,
-                     [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(patch.faces, patch.guests, s.samples);
-  }
-
-  void report(const Solved_patch& s)
-  {
-    ++m_result.number_of_patches;
-    m_result.sum_of_patch_sizes += double(s.number_of_faces);
-    m_result.times.flattening += s.flattening_time;
-    m_result.times.optimization += s.optimization_time;
-    m_result.times.acceptance += s.acceptance_time;
-    if(s.is_flattened)
-    {
-      m_result.conformal_flattenings += s.path == Flattening_path::conformal;
-      m_result.convex_border_flattenings += s.path == Flattening_path::convex_border;
-      m_result.failed_flattenings += s.path == Flattening_path::failed;
-      m_result.overlapping_flattenings += s.overlaps;
-      m_result.sum_of_flattening_distortion += s.distortion;
-    }
-    m_result.number_of_accepted_patches += s.decision.accepted;
-    m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
-    if(s.was_tried && !s.is_flattened)
-    {
-      m_taken += s.taken * s.number_of_free_vertices;
-      m_could_move += s.number_of_free_vertices;
-      m_missed += s.missed;
-    }
-    m_has_refused = m_has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
-
-    Patch_report report;
-    report.number_of_faces = s.number_of_faces;
-    report.energy_before = s.decision.before.energy;
-    report.energy_after = s.decision.after.energy;
-    report.defects_before = std::size_t(s.decision.before.defects());
-    report.defects_after = std::size_t(s.decision.after.defects());
-    report.accepted = s.decision.accepted;
-    report.is_finishing = m_is_finishing;
-    m_visitor.on_patch_end(report);
+    return m_round_solver.solve(patches, moves, density, m_limits);
   }
 
   Optimization_state& m_state;
@@ -532,17 +439,9 @@ private:
   Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;
   Patch_rounds m_rounds;
-  For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
-  Face_geometry m_geometry;
-  std::vector<double> m_edge_length;             // per vertex, of the input
+  Round_solver<ConcurrencyTag, Visitor> m_round_solver;
   std::vector<char> m_is_active, m_is_untouched; // per face
-  std::vector<char> m_moved;                     // per vertex
-  Drift_guard m_drift_guard;
   Acceptance_test::Limits m_limits;
-  double m_taken = 0, m_could_move = 0; // in this iteration on the surface: of whole steps
-  double m_missed = 0; // in this iteration on the surface: what whole steps had promised
-  bool m_has_refused = false;
-  bool m_is_finishing = false;
   std::size_t m_next_to_flatten = 0; // iteration
   bool m_prizes_angles = false;
   double m_cap = 0;
