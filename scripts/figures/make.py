@@ -21,7 +21,6 @@ from render import (
     Picture,
     View,
     colours,
-    corner_angles,
     distinct_colour,
     distortions,
     read,

@@ -15,7 +15,6 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkActor2D,
-    vtkCoordinate,
     vtkLight,
     vtkPolyDataMapper,
     vtkPolyDataMapper2D,
