@@ -220,7 +220,7 @@ private:
   // more rings around the faces with an angle below the given one; false if they have enough
   bool widen(double angle)
   {
-    const int most = 3;
+    const int most = 8; // it is for a few faces only
     bool widens = false;
     for(std::size_t f = 0; f < m_angles.size(); ++f)
       if(m_angles[f] < angle && m_rings[f] < most)
