@@ -236,10 +236,6 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   const NamedParametersReference& np_reference = parameters::default_values())
 {
   namespace internal = Reference_constrained_optimization::internal;
-#ifndef CGAL_LINKED_WITH_TBB
-  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
-                "Parallel_tag is enabled but TBB is unavailable.");
-#endif
   return internal::optimize<ConcurrencyTag>(
     mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
     np_reference);
@@ -296,10 +292,6 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   const NamedParametersReference& np_reference = parameters::default_values())
 {
   namespace internal = Reference_constrained_optimization::internal;
-#ifndef CGAL_LINKED_WITH_TBB
-  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
-                "Parallel_tag is enabled but TBB is unavailable.");
-#endif
   return internal::optimize<ConcurrencyTag>(
     mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
     np_reference, face_range);

@@ -219,6 +219,27 @@ def angle_picture():
                      ("before: " + figures[0], "before", "after", "after: " + figures[1]))
 
 
+def detail_picture():
+    """what is finer than the bound on the drift"""
+    optimize_angles()
+    rows("angle_close", program("rco_benchmark"), data("camel"), "--drift-bound", "0.05", "-o",
+         folder("angle_close"))
+    meshes = (read(data("camel")), read(os.path.join(WORK, "angle/camel.off")),
+              read(os.path.join(WORK, "angle_close/camel.off")))
+    view = View(meshes[0], *ANGLE_MESHES["camel"])
+    right, up = view.right_and_up()
+    focus = [f + view.radius * (0.83 * b - 0.33 * a) for f, a, b in zip(view.focus, right, up)]
+    size, gap = 310, 12
+    picture = Picture(3 * size + 2 * gap, size + TEXT + 40)
+    for i, (mesh, text) in enumerate(zip(meshes, ("before", "default bound: 0.25", "bound: 0.05"))):
+        picture.add(
+            Panel(mesh, view.nearby(focus, 0.13 * view.radius), colours=angle_colours(mesh), text=text,
+                  edge_width=0.5), i * (size + gap), TEXT + 40, size, size)
+    good, bad, label = ANGLE_SCALE
+    picture.scale(picture.width / 2 - 130, 18, 260, good, bad, label)
+    write_picture(picture, "detail_bound")
+
+
 def quad_picture():
     r = row_of(optimize_quads()[0], "mesh", "3torus")
     before = read(os.path.join(WORK, "quad_input/3torus.off"))
@@ -541,6 +562,7 @@ def tables():
 
 TASKS = {
     "angle_before_after": angle_picture,
+    "detail_bound": detail_picture,
     "quad_before_after": quad_picture,
     "map_before_after": map_picture,
     "compatible_checker": checker_picture,

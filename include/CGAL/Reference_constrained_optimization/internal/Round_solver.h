@@ -30,7 +30,7 @@ public:
   // what rounds have come to since the last call to `begin_iteration()`
   struct Progress
   {
-    std::vector<char> moved; // per vertex: by more than the tolerance
+    std::vector<char> moved;  // per vertex: by more than the tolerance
     bool has_refused = false; // a patch on the surface
     // on the surface, summed over the vertices: the parts of their steps that they took, and how many
     // could move
@@ -82,9 +82,9 @@ public:
   // false if it was cut short; what was solved by then is committed
   template <typename Density>
   bool solve(const std::vector<std::vector<int>>& patches,
-              Moves moves,
-              const Density& density,
-              const Acceptance_test::Limits& limits)
+             Moves moves,
+             const Density& density,
+             const Acceptance_test::Limits& limits)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;

@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 
-#include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
+#include <CGAL/Reference_constrained_optimization/internal/Drift_tracker.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
@@ -86,9 +86,8 @@ public:
     m_steps.start(patch);
     m_offences.assign(patch.vertices.size(), 0);
     m_candidate = patch.placed;
-    m_samples = patch.samples;
-    m_guests = patch.guests;
-    decision.before.drift_energy = drift_energy(patch);
+    m_tracker.start(patch);
+    decision.before.drift_energy = m_tracker.energy(patch);
 
     const int maximum_attempts = 20, local_attempts = 16;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
@@ -98,9 +97,8 @@ public:
       measure(patch, density, m_candidate, m_after);
       decision.after = sum_up(patch, m_after);
       check(m_interruption);
-      visit_samples(patch, state.reference);
-      visit_guests(patch, state.reference);
-      decision.after.drift_energy = drift_energy(patch);
+      m_tracker.visit(patch, state.reference, m_candidate, m_changed, m_is_changed);
+      decision.after.drift_energy = m_tracker.energy(patch);
       const bool exceeds = find_offenders(patch, decision.before);
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.has_fallen_from(decision.before);
@@ -128,8 +126,8 @@ public:
   // what was accepted, and the part of its way that each vertex went
   const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
   const std::vector<double>& steps() const { return m_steps.parts(); }
-  const std::vector<Patch::Sample>& samples() const { return m_samples; }
-  const std::vector<Patch::Guest>& guests() const { return m_guests; }
+  const std::vector<Patch::Sample>& samples() const { return m_tracker.samples(); }
+  const std::vector<Patch::Guest>& guests() const { return m_tracker.guests(); }
 
 private:
   // what a measure is made of; a cut changes it piece by piece
@@ -235,77 +233,6 @@ private:
     });
   }
 
-  // Looks how far the samples of changed faces are from R. None is further away than before by more
-  // than its way: as long as that is no matter it is good enough.
-  void visit_samples(const Patch& patch, const Reference_surface& reference)
-  {
-    if(m_samples.empty())
-      return;
-    const Indexed_mesh& triangles = patch.triangles();
-    const auto before = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
-    const auto now = [&](int v) -> const Placed_vertex& { return m_candidate[v]; };
-    for(const int f : m_changed)
-      for(int t = patch.triangle_of(f); t < triangles.number_of_faces() && patch.polygon_of(t) == f;
-          ++t)
-        for(int i = 0; i < 4; ++i)
-        {
-          const int s = sample_of(patch, t, i);
-          if(s < 0 || (s != 4 * t + i && m_is_changed[patch.polygon_of(s / 4)]))
-            continue; // it is the other triangle's
-          Patch::Sample& sample = m_samples[s];
-          const Vector_3 barycentric = sample_barycentric(s % 4);
-          const double way = (triangle_point(triangles, now, s / 4, barycentric) -
-                              triangle_point(triangles, before, s / 4, barycentric))
-                               .norm();
-          sample.distance = patch.samples[s].distance + way;
-          if(Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(s / 4)))
-            locate_sample(patch, reference, now, s, sample);
-        }
-  }
-
-  // looks where the points of R that are guests of the patch find it now
-  void visit_guests(const Patch& patch, const Reference_surface& reference)
-  {
-    if(m_guests.empty())
-      return;
-    const Indexed_mesh& mesh = patch.polygons;
-    const auto now = [&](int v) -> const Placed_vertex& { return m_candidate[v]; };
-    // a descent looks at the faces around the one where it begins, too
-    m_is_near.assign(patch.vertices.size(), 0);
-    for(const int f : m_changed)
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        m_is_near[mesh.corner_vertex[c]] = 1;
-    for(std::size_t i = 0; i < m_guests.size(); ++i)
-    {
-      if(!has_marked(mesh, m_guests[i].polygon, m_is_near))
-        continue;
-      const Patch::Guest& guest = patch.guests[i];
-      double way = 0;
-      for(int c = mesh.face_begin[guest.polygon]; c < mesh.face_begin[guest.polygon + 1]; ++c)
-      {
-        const int v = mesh.corner_vertex[c];
-        way = (std::max)(way, (m_candidate[v].position - patch.placed[v].position).norm());
-      }
-      if(Drift_barrier::is_felt(guest.distance + way, guest.bound))
-        locate_guest(patch, reference, now, m_guests[i]);
-      else
-      {
-        m_guests[i] = guest;
-        m_guests[i].distance += way;
-      }
-    }
-  }
-
-  double drift_energy(const Patch& patch) const
-  {
-    double sum = 0;
-    for(int s = 0; s < int(m_samples.size()); ++s)
-      sum += patch.barrier.value(m_samples[s].distance, patch.bound_of_triangle(s / 4));
-    for(const Patch::Guest& guest : m_guests)
-      sum += patch.barrier.value(guest.distance, guest.bound);
-    return sum;
-  }
-
   // finds what is worse than it may be; returns whether a limit is exceeded
   bool find_offenders(const Patch& patch, const Patch_measure& before)
   {
@@ -341,13 +268,13 @@ private:
       return is_beyond ||
              patch.barrier.value(distance, bound) > patch.barrier.value(old, bound) + much;
     };
-    for(std::size_t s = 0; s < m_samples.size(); ++s)
-      if(visit(m_samples[s].distance, patch.samples[s].distance,
+    for(std::size_t s = 0; s < samples().size(); ++s)
+      if(visit(samples()[s].distance, patch.samples[s].distance,
                patch.bound_of_triangle(int(s / 4))))
         add_triangle(patch, int(s / 4));
-    for(std::size_t i = 0; i < m_guests.size(); ++i)
-      if(visit(m_guests[i].distance, patch.guests[i].distance, m_guests[i].bound))
-        add_face(mesh, m_guests[i].polygon);
+    for(std::size_t i = 0; i < guests().size(); ++i)
+      if(visit(guests()[i].distance, patch.guests[i].distance, guests()[i].bound))
+        add_face(mesh, guests()[i].polygon);
     return exceeds;
   }
 
@@ -385,14 +312,6 @@ private:
   {
     for(const int v : patch.elements[e].vertices)
       add(v);
-  }
-
-  static bool has_marked(const Indexed_mesh& mesh, int f, const std::vector<char>& is_marked)
-  {
-    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      if(is_marked[mesh.corner_vertex[c]])
-        return true;
-    return false;
   }
 
   // the offending vertices go back, and after a while their neighbours, too
@@ -439,13 +358,12 @@ private:
   Limits m_limits;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;
-  std::vector<Patch::Sample> m_samples;
-  std::vector<Patch::Guest> m_guests;
+  Drift_tracker m_tracker;
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
   std::vector<int> m_changed; // faces to be measured
-  std::vector<char> m_is_changed, m_is_near, m_is_offender;
+  std::vector<char> m_is_changed, m_is_offender;
   std::vector<int> m_offenders; // vertices
   std::vector<int> m_offences, m_rings;
 };

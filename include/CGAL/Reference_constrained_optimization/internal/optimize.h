@@ -19,6 +19,7 @@
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/named_params_helper.h>
+#include <CGAL/tags.h>
 
 #include <algorithm>
 #include <chrono>
@@ -166,6 +167,10 @@ Result optimize(PolygonMesh& mesh,
                 const NamedParametersReference& np_reference,
                 const FaceRange& range = FaceRange())
 {
+#ifndef CGAL_LINKED_WITH_TBB
+  static_assert(!std::is_convertible<ConcurrencyTag, CGAL::Parallel_tag>::value,
+                "Parallel_tag is enabled but TBB is unavailable.");
+#endif
   const auto start = std::chrono::steady_clock::now();
   const auto& own_np = cgal_parameters(np);
   auto visitor_parameter = parameters::choose_parameter(

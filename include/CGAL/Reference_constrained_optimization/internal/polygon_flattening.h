@@ -19,6 +19,7 @@
 
 #include <Eigen/SparseLU>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -72,8 +73,10 @@ public:
       Solver;
     m_surface = &surface;
     lay_border(sides, corners);
-    return run(SMP::Mean_value_coordinates_parameterizer_3<Seam_mesh, Border, Solver>(
-             Border(m_border_points))) ||
+    // mean value coordinates are not defined at an edge without length
+    return (!has_empty_edge() &&
+            run(SMP::Mean_value_coordinates_parameterizer_3<Seam_mesh, Border, Solver>(
+              Border(m_border_points)))) ||
            run(SMP::Barycentric_mapping_parameterizer_3<Seam_mesh, Border, Solver>(
              Border(m_border_points)));
   }
@@ -105,6 +108,15 @@ private:
     }
     bool is_border_convex() const { return true; }
   };
+
+  bool has_empty_edge() const
+  {
+    const Mesh& mesh = m_surface->mesh();
+    return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Cut_surface::Edge e) {
+      return CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))) ==
+             0;
+    });
+  }
 
   void lay_border(const std::vector<Landmark_tree::Side>& sides,
                   const std::vector<Point_2>& corners)
