@@ -9,6 +9,7 @@ is removed.
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -20,7 +21,6 @@ from render import (
     Picture,
     View,
     colours,
-    corner_angles,
     distinct_colour,
     distortions,
     read,
@@ -485,6 +485,15 @@ def charts():
             os.remove(os.path.join(FIGURES, f"angles_{name}.svg"))
 
 
+def peer_charts():
+    path = folder("peers")
+    file = os.path.join(path, "angles.svg")
+    if not os.path.exists(file):
+        run(program("side_by_side"), *map(data, CHART_MESHES), "-o", path)
+    for name in ("angles", "drift"):
+        shutil.copy(os.path.join(path, name + ".svg"), os.path.join(FIGURES, f"peers_{name}.svg"))
+
+
 def quad_histograms():
     prefix = os.path.join(FIGURES, "quad")
     run(program("quad_mesh_optimization"), data("nefertiti"), "--energy", "angle", "--histograms",
@@ -573,6 +582,7 @@ TASKS = {
     "gallery_map": map_gallery,
     "quad_histograms": quad_histograms,
     "charts": charts,
+    "peer_charts": peer_charts,
     "tables": tables,
 }
 

@@ -7,7 +7,7 @@ projection, so that two panels with the same view can be compared edge by edge.
 import math
 import os
 
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints, vtkUnsignedCharArray
+from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkImagingCore import vtkImageShrink3D
@@ -15,7 +15,6 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkActor2D,
-    vtkCoordinate,
     vtkLight,
     vtkPolyDataMapper,
     vtkPolyDataMapper2D,
