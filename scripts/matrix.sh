@@ -145,14 +145,11 @@ eigen_version() {
     "$1/usr/share/eigen3/cmake/Eigen3ConfigVersion.cmake"
 }
 
-# fingerprint <configuration>: all that results hang on, the files among them
+# the state of all files that results hang on
 fingerprint() {
-  {
-    echo "$1"
-    cd "$root"
-    find CMakeLists.txt cmake include test examples benchmark -type f -print0 |
-      LC_ALL=C sort -z | xargs -0 sha256sum
-  } | sha256sum
+  cd "$root"
+  find CMakeLists.txt cmake include test examples benchmark -type f -print0 |
+    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
 }
 
 # tests_of <build folder> <regex>
@@ -169,8 +166,9 @@ targets_of() {
   done | sort -u
 }
 
-# Results are in one file a configuration: the fingerprint, then lines 'versions <columns>',
-# 'known <test>', 'passed <test>', 'failed <test>', 'build <seconds>', 'tests <seconds>' and 'broken <why>'.
+# Results are in one file a configuration: the fingerprint and the configuration, then lines
+# 'versions <columns>', 'known <test>', 'passed <test>', 'failed <test>', 'build <seconds>',
+# 'tests <seconds>' and 'broken <why>'.
 names() {
   sed -n "s/^$1 //p" "$2" 2>/dev/null | sort -u
 }
@@ -203,7 +201,7 @@ run() {
 
   columns="$name | $(cgal_version "$cgal") | $(eigen_version "$eigen")"
   columns+=" | $compiler $("$compiler" -dumpfullversion -dumpversion) | $standard | $tbb | $type"
-  key=$(fingerprint "$columns $(flags_for "$type" "$compiler")")
+  key="$sources $columns $(flags_for "$type" "$compiler")"
   if [ "$force" = 1 ] || [ "$(sed -n 1p "$result" 2>/dev/null)" != "$key" ] ||
     ! grep -q '^known ' "$result"; then
     printf '%s\nversions %s\nbroken %s\n' "$key" "$columns" "not configured" >"$result"
@@ -272,6 +270,7 @@ row() {
     if [ "$failed" -gt 0 ]; then status+=", $failed failed"; fi
     if [ $((passed + failed)) -lt "$known" ]; then status+=", the others not run"; fi
   fi
+  if [ "$(sed -n '1s/ .*//p' "$result")" != "$sources" ]; then status+=" (older sources)"; fi
   echo "| $(names versions "$result") | $status | $(minutes build "$result") | $(minutes tests "$result") |"
 }
 
@@ -287,6 +286,7 @@ write_table() {
 
 main() {
   local line status failed=0
+  sources=$(fingerprint)
   for line in "${selected[@]}"; do
     set +e # in a condition, run would go on after an error
     # shellcheck disable=SC2086 # its words are the arguments
