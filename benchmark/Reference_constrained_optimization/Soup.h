@@ -30,8 +30,9 @@ struct Soup
   }
 };
 
-// vertices and faces keep their order; throws if a half-edge mesh cannot hold the soup
-inline Mesh to_mesh(const Soup& soup)
+// Vertices and faces keep their order. Faces that a half-edge mesh cannot hold beside those before them
+// are left out, and counted.
+inline Mesh to_mesh(const Soup& soup, std::size_t& left_out)
 {
   Mesh mesh;
   for(const Kernel::Point_3& p : soup.points)
@@ -41,9 +42,18 @@ inline Mesh to_mesh(const Soup& soup)
     std::vector<Mesh::Vertex_index> corners;
     for(const std::size_t v : face)
       corners.emplace_back(Mesh::size_type(v));
-    if(mesh.add_face(corners) == Mesh::null_face())
-      throw std::runtime_error("the faces do not make a half-edge mesh");
+    left_out += mesh.add_face(corners) == Mesh::null_face();
   }
+  return mesh;
+}
+
+// throws if a half-edge mesh cannot hold all
+inline Mesh to_mesh(const Soup& soup)
+{
+  std::size_t left_out = 0;
+  Mesh mesh = to_mesh(soup, left_out);
+  if(left_out > 0)
+    throw std::runtime_error("the faces do not make a half-edge mesh");
   return mesh;
 }
 

@@ -262,20 +262,10 @@ private:
     }
   }
 
-  // of the faces that a half-edge mesh can take, one by one
   static Mesh built(const Soup& s)
   {
-    Mesh mesh;
-    for(const Kernel::Point_3& p : s.points)
-      mesh.add_vertex(p);
-    for(const std::vector<std::size_t>& face : s.faces)
-    {
-      std::vector<Mesh::Vertex_index> corners;
-      for(const std::size_t v : face)
-        corners.emplace_back(Mesh::size_type(v));
-      mesh.add_face(corners);
-    }
-    return mesh;
+    std::size_t left_out = 0;
+    return to_mesh(s, left_out);
   }
 
   Byte_reader m_bytes;

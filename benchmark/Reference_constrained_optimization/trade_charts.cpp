@@ -81,7 +81,7 @@ Svg_scatter::Series series(std::size_t i, const std::string& name, bool is_fille
           true};
 }
 
-const double no_line = std::numeric_limits<double>::infinity();
+const double infinity = std::numeric_limits<double>::infinity(), no_line = infinity;
 
 void draw_drift_bound(const std::vector<Named_mesh>& meshes, const std::string& file)
 {
@@ -94,7 +94,6 @@ void draw_drift_bound(const std::vector<Named_mesh>& meshes, const std::string& 
     const Mesh& mesh = meshes[i].mesh;
     names.push_back(series(i, meshes[i].name, true));
     const double edge = RCO::drift(mesh, mesh).reference_mean_edge_length;
-    const double infinity = std::numeric_limits<double>::infinity();
     const Run free = run(mesh, 1, CGAL::parameters::drift_bound(infinity));
     for(const double bound : {0.1, 0.15, 0.25, 0.5, 1.})
     {
@@ -161,7 +160,7 @@ void draw_energy(const std::vector<Named_mesh>& meshes, const std::string& file)
       const Run r = run(m.mesh, 1,
                         CGAL::parameters::use_on_surface_steps(on_surface)
                           .use_finishing_stage(false)
-                          .drift_bound(std::numeric_limits<double>::infinity())
+                          .drift_bound(infinity)
                           .visitor(std::ref(watch)));
       watch.history.front().y = r.result.initial_energy;
       for(Svg_log_chart::Point& p : watch.history)
