@@ -42,7 +42,7 @@ struct Solved_patch
   bool is_flattened = false;
   bool overlaps = false;
   double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
-  double missed = 0; // the gain that the last proposal promised, as far as it was not taken
+  double missed = 0; // an estimate: the gain that the last proposal promised, times 1 - `taken`
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
   std::size_t number_of_faces = 0, number_of_free_vertices = 0; // of the patch; 0: was not solved
