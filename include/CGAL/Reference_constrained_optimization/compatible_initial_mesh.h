@@ -68,7 +68,7 @@ std::vector<int> landmark_positions(const FaceGraph& g,
       throw Invalid_input("landmarks: pair " + pair + " names a vertex that the " + name +
                           " does not have");
     const int i = found->second;
-    if(copy.mesh.vertex_begin[i] == copy.mesh.vertex_begin[i + 1])
+    if(copy.mesh.is_isolated(i))
       throw Invalid_input("landmarks: vertex " + std::to_string(i) + " of the " + name + " (pair " +
                           pair + ") has no face");
     if(pair_of[i] >= 0)
@@ -235,7 +235,7 @@ compatible_initial_mesh(const SourceMesh& source,
   std::vector<Point> soup_points;
   for(std::size_t v = 0; v < points.size(); ++v)
   {
-    const bool is_isolated = from.mesh.vertex_begin[v] == from.mesh.vertex_begin[v + 1];
+    const bool is_isolated = from.mesh.is_isolated(v);
     const internal::Vector_3& p = is_isolated ? from.points[v] : points[v];
     soup_points.emplace_back(p.x(), p.y(), p.z());
   }

@@ -86,6 +86,7 @@ public:
   int source(int c) const { return corner_vertex[c]; }
   int target(int c) const { return corner_vertex[next(c)]; }
 
+  bool is_isolated(int v) const { return vertex_begin[v] == vertex_begin[v + 1]; }
   // a face with the vertex, which must have one, and with both of an edge, -1 if there is none
   int face_at(int v) const { return corner_face[vertex_corners[vertex_begin[v]]]; }
   int face_at(int v, int w) const

@@ -59,13 +59,18 @@ inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
     mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
 }
 
-inline Selection_parameters sized(const Loop_parameters& parameters, const Indexed_mesh& mesh)
+// Where steps on the surface follow, what is laid flat for the sake of sharp triangles is no larger than
+// it takes to mend them; stretched elements are a matter of what is around them.
+inline Selection_parameters
+sized(const Loop_parameters& parameters, const Indexed_mesh& mesh, bool prizes_angles)
 {
   Selection_parameters selection = parameters.selection;
   // steps on the surface come by everywhere afterwards
   selection.visits_all_well = !parameters.use_on_surface_steps;
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = patch_size(mesh, 4.5, 400);
+    selection.maximum_patch_size = parameters.use_on_surface_steps && prizes_angles
+                                     ? patch_size(mesh, 1.2, 150)
+                                     : patch_size(mesh, 4.5, 400);
   return selection;
 }
 

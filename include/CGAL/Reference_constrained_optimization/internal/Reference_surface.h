@@ -130,7 +130,7 @@ public:
   void reverse(const std::vector<char>& is_reversed)
   {
     for(int v = 0; v < m_mesh.number_of_vertices(); ++v)
-      if(m_mesh.vertex_begin[v] < m_mesh.vertex_begin[v + 1] && is_reversed[m_mesh.face_at(v)])
+      if(!m_mesh.is_isolated(v) && is_reversed[m_mesh.face_at(v)])
         m_normals[v] = -m_normals[v];
   }
 

@@ -204,12 +204,9 @@ private:
     Mesh_copy copy;
     for(const Placed_vertex& v : state.vertices)
       copy.points.push_back(v.position);
-    const Point_index index(copy.points,
-                            [&](int v) { return mesh.vertex_begin[v] < mesh.vertex_begin[v + 1]; });
+    const Point_index index(copy.points, [&](int v) { return !mesh.is_isolated(v); });
     std::vector<int> twin(vertices, -1), face(n, -1);
-    const auto is_used = [&](int r) {
-      return r >= vertices || reference.vertex_begin[r] < reference.vertex_begin[r + 1];
-    };
+    const auto is_used = [&](int r) { return r >= vertices || !reference.is_isolated(r); };
     bool all_are_known = true;
     for(int r = 0; r < n; ++r)
     {

@@ -138,7 +138,7 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const double touching = 1e-12 * reference.diagonal() + rounding;
 
   const Indexed_mesh& surface = reference.mesh();
-  const auto is_used = [&](int v) { return surface.vertex_begin[v] < surface.vertex_begin[v + 1]; };
+  const auto is_used = [&](int v) { return !surface.is_isolated(v); };
   const Point_index index(reference.points(), is_used);
   // of several vertices of R in one place, the one that has the same number if R is the mesh
   const auto find_twin = [&](int v) {
@@ -158,7 +158,7 @@ void place_on_reference(const std::vector<Vector_3>& points,
     for(int v = begin; v < end; ++v)
     {
       check_now_and_then(interruption, v);
-      if(mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
+      if(!mesh.is_isolated(v))
       {
         const int twin = find_twin(v);
         Surface_point& point = state.vertices[v].on_reference;
@@ -172,7 +172,7 @@ void place_on_reference(const std::vector<Vector_3>& points,
   {
     Placed_vertex& placed = state.vertices[v];
     placed.position = points[v];
-    if(mesh.vertex_begin[v] == mesh.vertex_begin[v + 1])
+    if(mesh.is_isolated(v))
       continue;
     const double distance = (placed.on_reference.position - points[v]).norm();
     if(distance > limit && is_needed(v))

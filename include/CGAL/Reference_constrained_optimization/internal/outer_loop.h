@@ -51,7 +51,8 @@ public:
       m_result(result),
       m_interruption(interruption),
       m_random(parameters.random_seed),
-      m_selection(state.mesh, sized(parameters, state.mesh)),
+      m_prizes_angles(prizes_angles(state.elements)),
+      m_selection(state.mesh, sized(parameters, state.mesh, m_prizes_angles)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
       m_partition(state.mesh,
                   on_surface_patch_size(parameters.selection, state.mesh),
@@ -111,7 +112,6 @@ private:
     m_interruption.check();
     m_round_solver.initialize(make_drift_guard());
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
-    m_prizes_angles = prizes_angles(m_state.elements);
 
     m_interruption.check();
     m_result.status = Status::iteration_limit;
@@ -178,6 +178,8 @@ private:
         m_limits.strain_resistance =
           (std::min)(largest_resistance, adapted_resistance(m_limits.strain_resistance,
                                                             progress.taken / progress.could_move));
+      m_held_up = is_held_up() ? m_held_up + 1 : 0;
+      const bool divides = m_held_up >= 2 && divide_further();
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
       const bool repairs =
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
@@ -195,7 +197,7 @@ private:
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       }
       else if(!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
-              !divide_further())
+              !(divides || ((is_held_up() || progress.has_refused) && divide_further())))
       {
         m_result.status = Status::converged;
         return true;
@@ -204,15 +206,20 @@ private:
     return m_parameters.number_of_iterations > 0;
   }
 
-  // A large patch that was refused, or whose steps were cut to small parts, may be held up by a few
-  // places: the next iteration visits the same faces in smaller ones. False if that is no way out.
+  // Whether a few places hold up the large patches that they are in: the steps of the last iteration
+  // were cut to small parts.
+  bool is_held_up() const
+  {
+    const auto& progress = m_round_solver.progress();
+    return m_parameters.use_on_surface_steps && progress.taken < 0.8 * progress.could_move;
+  }
+
+  // From the next iteration on patches are smaller. False if they are small enough.
   bool divide_further()
   {
     const int smallest = 1000, parts = 4;
     const int size = m_partition.patch_size() / parts;
-    const auto& progress = m_round_solver.progress();
-    const bool is_held_up = progress.has_refused || progress.taken < 0.8 * progress.could_move;
-    if(!m_parameters.use_on_surface_steps || !is_held_up || size < smallest)
+    if(size < smallest)
       return false;
     m_partition.set_patch_size(size);
     return true;
@@ -436,6 +443,7 @@ private:
   Result& m_result;
   Interruption& m_interruption;
   CGAL::Random m_random;
+  bool m_prizes_angles; // whether the energy does
   Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;
   Patch_rounds m_rounds;
@@ -443,7 +451,7 @@ private:
   std::vector<char> m_is_active, m_is_untouched; // per face
   Acceptance_test::Limits m_limits;
   std::size_t m_next_to_flatten = 0; // iteration
-  bool m_prizes_angles = false;
+  int m_held_up = 0;                 // iterations in a row
   double m_cap = 0;
   double m_rest_energy = 0;
   double m_initial_energy = 0;

@@ -20,9 +20,11 @@
 #include <CGAL/Surface_mesh_parameterization/Mean_value_coordinates_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace CGAL {
@@ -131,16 +133,18 @@ private:
   {
     m_shapes.clear();
     m_area = 0;
-    m_has_empty_edge = false;
+    double shortest = std::numeric_limits<double>::infinity();
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const int* v = &triangles.corner_vertex[3 * t];
       const Vector_3 &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
       m_shapes.push_back(triangle_shape(a, b, c));
       m_area += 0.5 * m_shapes.back().determinant();
-      m_has_empty_edge = m_has_empty_edge || a == b || b == c || c == a;
+      shortest = (std::min)({shortest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
     }
     const double mean_length = std::sqrt(m_area / triangles.number_of_faces());
+    // when it is moved to the origin, rounding may leave nothing of it
+    m_has_empty_edge = !(shortest > 1e-9 * mean_length);
     for(Eigen::Matrix2d& s : m_shapes)
     {
       s(0, 0) = (std::max)(s(0, 0), 0.01 * mean_length);

@@ -61,7 +61,7 @@ inline bool is_sphere(const Mesh_copy& copy, const Cut_surface& surface, const s
   extract_boundary_cycles(mesh, std::back_inserter(borders));
   int vertices = 0;
   for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
-    vertices += copy.mesh.vertex_begin[v] < copy.mesh.vertex_begin[v + 1];
+    vertices += !copy.mesh.is_isolated(v);
   const int characteristic = vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces());
   if(borders.size() > 1 || characteristic != 2 - int(borders.size()))
     throw Invalid_input(name + ": has " + std::to_string(borders.size()) + " borders and genus " +

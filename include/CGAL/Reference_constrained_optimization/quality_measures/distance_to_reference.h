@@ -94,7 +94,7 @@ distance_to_reference(const FaceGraph& mesh,
   for(const auto v : vertices(mesh))
   {
     ++i;
-    if(copy.mesh.vertex_begin[i] == copy.mesh.vertex_begin[i + 1] || !filter(v))
+    if(copy.mesh.is_isolated(i) || !filter(v))
       continue;
     ++result.number_of_vertices;
     const double distance = (surface.closest(copy.points[i]).position - copy.points[i]).norm();
