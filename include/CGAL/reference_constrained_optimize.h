@@ -133,8 +133,11 @@ namespace CGAL {
  *                           among these, so that some are larger}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
- *                       number of triangles, between 400 and 4000, the others an eighth of the
- *                       mesh, between 4000 and 20000 triangles; a quad counts as two triangles}
+ *                       number of triangles, between 400 and 4000, but 1.2 times, 150 at least, for
+ *                       energies that prize angles unless `use_on_surface_steps` is `false`; the
+ *                       others hold an eighth of the mesh, between 4000 and 20000 triangles, and a
+ *                       quarter of that, 1000 at least, once they are held up; a quad counts as two
+ *                       triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
  *     \cgalParamDescription{whether vertices on lines slide along them: border vertices that are
