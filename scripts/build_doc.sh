@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the manual into build/doc/html with Doxygen. Warnings are shown and kept in
-# build/doc/warnings.txt; --strict turns them, and links to what is not there, into a failure.
+# build/doc/warnings.txt; --strict turns them, links to what is not there and figures that no page
+# shows into a failure.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -23,7 +24,7 @@ echo "The manual is build/doc/html/index.html"
 is_clean=1
 [ ! -s build/doc/warnings.txt ] || is_clean=0
 if command -v python3 >/dev/null; then
-  python3 scripts/check_links.py build/doc/html >&2 || is_clean=0
+  python3 scripts/check_links.py build/doc/html "$(dirname "$doxyfile")/fig" >&2 || is_clean=0
 fi
 if [ "${1:-}" = --strict ] && [ "$is_clean" = 0 ]; then
   exit 1

@@ -1,6 +1,7 @@
-"""Checks that the pages of a folder refer to nothing that is not there: pages, places in them, figures.
+"""Checks that the pages of a folder refer to nothing that is not there: pages, places in them, figures;
+and that they show every figure of another folder: one that they do not was lost with the text about it.
 
-usage: check_links.py FOLDER
+usage: check_links.py FOLDER FIGURES
 """
 
 import html.parser
@@ -22,7 +23,7 @@ class Page(html.parser.HTMLParser):
                 self.links.add(value)
 
 
-def main(folder):
+def main(folder, figures):
     pages = {}
     for name in sorted(os.listdir(folder)):
         if name.endswith(".html"):
@@ -42,8 +43,12 @@ def main(folder):
             elif place and target in pages and place not in pages[target].places:
                 print(f"{name}: {target} has no place {place}")
                 broken += 1
+    shown = {os.path.basename(urllib.parse.urlsplit(l).path) for p in pages.values() for l in p.links}
+    for figure in sorted(set(os.listdir(figures)) - shown):
+        print(f"no page shows {figure}")
+        broken += 1
     return 1 if broken or not pages else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))
