@@ -37,11 +37,17 @@ public:
   /// the factor `k`.
   double exponent_factor() const { return m_factor; }
 
+  /// the density of `J`, without its singular values.
+  double value(const Eigen::Matrix2d& J) const
+  {
+    const double a = J(0, 0), b = J(1, 0), c = J(0, 1), d = J(1, 1);
+    return at(a * d - b * c, a * a + b * b + c * c + d * d);
+  }
+
   /// value at the signed singular values.
   double singular_value_energy(double s1, double s2) const
   {
-    const double n = s1 * s1 + s2 * s2;
-    return of_ratio(n > 0 ? s1 * s2 / n : 0).value;
+    return at(s1 * s2, s1 * s1 + s2 * s2);
   }
 
   /// value and derivatives at the signed singular values.
@@ -54,15 +60,17 @@ public:
       result.value = of_ratio(0).value;
       return result;
     }
-    const double r = s1 * s2 / n;
+    const double i = 1 / n;
+    const double product = s1 * s2, a = s1 * s1, b = s2 * s2;
+    const double r = product / n; // also where the inverse is infinite
     const Ratio_jet f = of_ratio(r);
     // derivatives of r = s1 s2 / (s1^2 + s2^2)
-    const double w = (s2 * s2 - s1 * s1) / (n * n);
+    const double w = (b - a) * i * i;
     const double r1 = s2 * w, r2 = -s1 * w;
-    const double r11 = 2 * s1 * s2 * (s1 * s1 - 3 * s2 * s2) / (n * n * n);
-    const double r22 = 2 * s1 * s2 * (s2 * s2 - 3 * s1 * s1) / (n * n * n);
-    const double r12 =
-      (6 * s1 * s1 * s2 * s2 - s1 * s1 * s1 * s1 - s2 * s2 * s2 * s2) / (n * n * n);
+    const double i3 = i * i * i;
+    const double r11 = 2 * product * (a - 3 * b) * i3;
+    const double r22 = 2 * product * (b - 3 * a) * i3;
+    const double r12 = (6 * a * b - a * a - b * b) * i3;
     result.value = f.value;
     result.d1 = f.first * r1;
     result.d2 = f.first * r2;
@@ -73,6 +81,12 @@ public:
   }
 
 private:
+  double at(double determinant, double squared_norm) const
+  {
+    const double r = squared_norm > 0 ? determinant / squared_norm : 0;
+    return r < m_threshold ? of_ratio(r).value : std::exp(m_factor / r);
+  }
+
   struct Ratio_jet
   {
     double value, first, second;
@@ -81,10 +95,9 @@ private:
   Ratio_jet of_ratio(double r) const
   {
     const double at = r < m_threshold ? m_threshold : r;
-    const double e = std::exp(m_factor / at);
-    const double slope = -m_factor / (at * at) * e;
-    const double bend =
-      (m_factor * m_factor / (at * at * at * at) + 2 * m_factor / (at * at * at)) * e;
+    const double i = 1 / at, e = std::exp(m_factor * i);
+    const double slope = -m_factor * i * i * e;
+    const double bend = (m_factor * i + 2) * m_factor * i * i * i * e;
     if(r >= m_threshold)
       return {e, slope, bend};
     const double h = r - at;

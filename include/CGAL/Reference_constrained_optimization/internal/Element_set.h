@@ -25,8 +25,8 @@ public:
   struct Element
   {
     std::array<int, 3> vertices;
-    Eigen::Matrix2d rest_inverse;
-    bool is_in_quad; // its face has more corners than it
+    bool is_in_quad;                                            // its face has more corners than it
+    Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
 
   // of the faces that are marked; of all if there are no marks

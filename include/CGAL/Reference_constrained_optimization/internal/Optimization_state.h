@@ -120,8 +120,16 @@ Eigen::Matrix2d element_jacobian(const Element_set::Element& element, const Vert
 {
   const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
                       &c = vertex(element.vertices[2]);
-  return signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal) *
-         element.rest_inverse;
+  const Eigen::Matrix2d S =
+    signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal);
+  const auto& R = element.rest_inverse;
+  // S is upper triangular; entry by entry, as vectors would have to wait for what was just stored
+  Eigen::Matrix2d J;
+  J(0, 0) = S(0, 0) * R(0, 0) + S(0, 1) * R(1, 0);
+  J(1, 0) = S(1, 1) * R(1, 0);
+  J(0, 1) = S(0, 0) * R(0, 1) + S(0, 1) * R(1, 1);
+  J(1, 1) = S(1, 1) * R(1, 1);
+  return J;
 }
 
 // density of one element on the surface
@@ -140,14 +148,20 @@ double smallest_angle_cosine(const Element_set::Element& element, const VertexAc
 {
   if(element.is_in_quad)
     return -1;
+  Vector_3 sides[3]; // from each vertex to the next
+  double lengths[3];
+  for(int i = 0; i < 3; ++i)
+  {
+    sides[i] =
+      vertex(element.vertices[(i + 1) % 3]).position - vertex(element.vertices[i]).position;
+    lengths[i] = sides[i].norm();
+  }
   double largest = -1;
   for(int i = 0; i < 3; ++i)
   {
-    const Vector_3& o = vertex(element.vertices[i]).position;
-    const Vector_3 a = vertex(element.vertices[(i + 1) % 3]).position - o;
-    const Vector_3 b = vertex(element.vertices[(i + 2) % 3]).position - o;
-    const double lengths = a.norm() * b.norm();
-    largest = (std::max)(largest, lengths > 0 ? a.dot(b) / lengths : 1.);
+    const int before = (i + 2) % 3;
+    const double product = lengths[i] * lengths[before];
+    largest = (std::max)(largest, product > 0 ? -sides[i].dot(sides[before]) / product : 1.);
   }
   return largest;
 }

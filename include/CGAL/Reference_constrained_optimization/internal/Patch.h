@@ -109,7 +109,12 @@ public:
     corners.reserve(begins.back());
     opposites.reserve(begins.back());
     patch.outside_face.reserve(begins.back());
-    patch.placed.reserve(begins.back() / 4); // most often enough: fewer copies
+    const std::size_t enough = std::size_t(begins.back()) / 4; // vertices, most often: fewer copies
+    patch.placed.reserve(enough);
+    patch.vertices.reserve(enough);
+    corners_in_patch.reserve(enough);
+    patch.elements.reserve(begins.back() - 2 * faces.size()); // triangles
+    patch.element_begin.reserve(faces.size() + 1);
     for(const int f : faces)
     {
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -144,6 +149,7 @@ public:
     patch.element_begin.push_back(int(patch.elements.size()));
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
+    patch.is_free.reserve(n);
     for(int i = 0; i < n; ++i)
     {
       const int v = patch.vertices[i];

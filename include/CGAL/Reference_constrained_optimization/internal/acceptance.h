@@ -123,8 +123,8 @@ public:
     return decision;
   }
 
-  // what was accepted, and the part of its way that each vertex went
-  const std::vector<Placed_vertex>& candidate() const { return m_candidate; }
+  // what was accepted, to be taken, and the part of its way that each vertex went
+  std::vector<Placed_vertex>& candidate() { return m_candidate; }
   const std::vector<double>& steps() const { return m_steps.parts(); }
   const std::vector<Patch::Sample>& samples() const { return m_tracker.samples(); }
   const std::vector<Patch::Guest>& guests() const { return m_tracker.guests(); }

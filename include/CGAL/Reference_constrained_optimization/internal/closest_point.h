@@ -16,13 +16,16 @@ namespace internal {
 inline Vector_3
 closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, const Vector_3& c)
 {
-  // minimal distance to the three sides: needed at the boundary only
-  const auto on_sides = [&]() {
+  // minimal distance to those of the sides ab, bc, ca that are faced
+  const auto on_sides = [&](bool faces_ab, bool faces_bc, bool faces_ca) {
     const Vector_3* t[3] = {&a, &b, &c};
+    const bool is_faced[3] = {faces_ab, faces_bc, faces_ca};
     Vector_3 best(1, 0, 0);
     double best_distance = -1;
     for(int i = 0; i < 3; ++i)
     {
+      if(!is_faced[i])
+        continue;
       const Vector_3 &s = *t[i], &e = *t[(i + 1) % 3];
       const Vector_3 d = e - s;
       const double length = d.squaredNorm();
@@ -61,12 +64,12 @@ closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, con
       return Vector_3(k(2), k(0), k(1));
     }
     if(!(det > 1e-16 * uu * vv))
-      return on_sides();
+      return on_sides(true, true, true);
   }
   const double y = w.cross(v).dot(n) / det, z = u.cross(w).dot(n) / det;
   if(y > 0 && z > 0 && y + z < 1)
     return Vector_3(1 - y - z, y, z);
-  return on_sides();
+  return on_sides(!(z > 0), !(y + z < 1), !(y > 0));
 }
 
 // a point of a triangle mesh that is a local minimum of the distance to another one

@@ -179,7 +179,7 @@ private:
       if(decision.accepted)
       {
         s.decision.after = decision.after;
-        s.patch.placed = m_acceptance.candidate();
+        s.patch.placed.swap(m_acceptance.candidate());
         s.patch.samples = m_acceptance.samples();
         s.patch.guests = m_acceptance.guests();
         s.taken = mean_part(s.patch, m_acceptance.steps());

@@ -99,12 +99,12 @@ public:
       check(m_interruption);
       if(step == 0)
         outcome.promised = 0.5 * m_right.dot(m_direction);
-      damp(problem, u);
+      const bool is_safe = damp(problem, u);
       const double decrease = m_right.dot(m_direction);
       if(!(decrease > tolerance * m_scale))
         break;
 
-      double t = (std::min)(1., 0.9 * largest_flip_free_step(problem, u));
+      double t = is_safe ? 1 : (std::min)(1., 0.9 * largest_flip_free_step(problem, u));
       double trial = 0;
       bool found = false;
       for(int halving = 0; halving < 20 && !found; ++halving)
@@ -239,32 +239,35 @@ private:
   }
 
   // Shortens the motion of the vertices of elements that would collapse on the way, so that these few
-  // do not hold back all others, unless little of the descent would remain.
+  // do not hold back all others, unless little of the descent would remain. Returns whether a whole step
+  // is known to let none collapse.
   template <typename Problem>
-  void damp(const Problem& problem, const std::vector<Vector_2>& u)
+  bool damp(const Problem& problem, const std::vector<Vector_2>& u)
   {
     m_undamped = m_direction;
+    bool is_safe = false;
     const int maximum_passes = 3; // motions that are shortened unequally may collapse others
-    for(int pass = 0; pass < maximum_passes; ++pass)
+    for(int pass = 0; pass < maximum_passes && !is_safe; ++pass)
     {
       m_part.assign(m_size, 1.);
-      bool is_damped = false;
+      is_safe = true;
       for_each_collapse(problem, u, [&](std::size_t e, double time) {
         const double part = 0.9 * time;
         if(!(part < 1))
           return;
-        is_damped = true;
+        is_safe = false;
         for(const int v : problem.triples[e])
           if(m_variable[v] >= 0)
             m_part[m_variable[v]] = (std::min)(m_part[m_variable[v]], part);
       });
-      if(!is_damped)
-        break;
-      for(int i = 0; i < m_size; ++i)
-        m_direction.segment<2>(2 * i) *= m_part[i];
+      if(!is_safe)
+        for(int i = 0; i < m_size; ++i)
+          m_direction.segment<2>(2 * i) *= m_part[i];
     }
-    if(!(m_right.dot(m_direction) > 0.1 * m_right.dot(m_undamped)))
-      m_direction = m_undamped;
+    if(m_right.dot(m_direction) > 0.1 * m_right.dot(m_undamped))
+      return is_safe;
+    m_direction = m_undamped;
+    return false;
   }
 
   template <typename Problem>
@@ -290,7 +293,10 @@ private:
       const Eigen::Matrix2d shape = problem.shape(e, u);
       // inverted already, or as good as: the density pushes it back, and may be trusted with that
       const double flat = 1e-3;
-      if(!(shape.determinant() > flat * shape.squaredNorm()))
+      const double area = shape.determinant();
+      const double squares = shape(0, 0) * shape(0, 0) + shape(1, 0) * shape(1, 0) +
+                             shape(0, 1) * shape(0, 1) + shape(1, 1) * shape(1, 1);
+      if(!(area > flat * squares))
         continue;
       const std::array<int, 3>& t = problem.triples[e];
       const Vector_2 first = problem.corner_map(e, 0) * motion(t[0]);
