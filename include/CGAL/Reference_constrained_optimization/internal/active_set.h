@@ -153,23 +153,6 @@ bad_regions(const Optimization_state& state, const Density& density, double bad,
   return result;
 }
 
-// The faces with an element beyond `bad`, the worst first: of a large mesh a five-hundredth and some.
-template <typename ConcurrencyTag, typename Density>
-std::vector<std::pair<double, int>>
-worst_faces(const Optimization_state& state, const Density& density, double bad)
-{
-  std::vector<std::pair<double, int>> faces = face_densities<ConcurrencyTag>(state, density);
-  faces.erase(std::remove_if(faces.begin(), faces.end(),
-                             [&](const std::pair<double, int>& d) { return !(d.first > bad); }),
-              faces.end());
-  const std::size_t most = 20 + std::size_t(state.mesh.number_of_faces()) / 500;
-  const std::size_t n = (std::min)(most, faces.size());
-  std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
-                    std::greater<std::pair<double, int>>());
-  faces.resize(n);
-  return faces;
-}
-
 // forgets among the vertices that moved those further than a ring from bad elements
 template <typename ConcurrencyTag, typename Density>
 void keep_near_bad(const Optimization_state& state,

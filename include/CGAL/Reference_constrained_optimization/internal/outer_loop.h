@@ -15,6 +15,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
 #include <CGAL/Reference_constrained_optimization/internal/saved_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/worst_faces.h>
 
 #include <CGAL/Random.h>
 
@@ -197,7 +198,7 @@ private:
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       }
       else if(!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
-              !(divides || ((is_held_up() || progress.has_refused) && divide_further())))
+              !(divides || ((m_held_up > 0 || progress.has_refused) && divide_further())))
       {
         m_result.status = Status::converged;
         return true;
@@ -211,7 +212,7 @@ private:
   bool is_held_up() const
   {
     const auto& progress = m_round_solver.progress();
-    return m_parameters.use_on_surface_steps && progress.taken < 0.8 * progress.could_move;
+    return progress.taken < 0.8 * progress.could_move; // neither is counted for flattened patches
   }
 
   // From the next iteration on patches are smaller. False if they are small enough.
@@ -278,68 +279,21 @@ private:
     return before - after > m_parameters.energy_tolerance * scale;
   }
 
-  // The worst elements, by themselves, as long as that helps: by Newton steps in small patches around
-  // them, and where these end, by a search for better places of their vertices. False if it was cut
-  // short.
+  // false if it was cut short
   bool revisit_worst()
   {
-    const Indexed_mesh& mesh = m_state.mesh;
-    const int maximum_passes = 10;
-    double before = std::numeric_limits<double>::infinity();
-    for(int pass = 0; pass < maximum_passes; ++pass)
-    {
-      m_interruption.check();
-      const std::vector<std::pair<double, int>> worst =
-        worst_faces<ConcurrencyTag>(m_state, m_density, m_limits.bad);
-      if(worst.empty())
-        return true;
-      m_limits.worst = (std::min)(m_limits.worst, worst.front().first);
-      std::vector<char> is_bad(mesh.number_of_faces(), 0);
-      double after = 0;
-      for(const std::pair<double, int>& d : worst)
-      {
-        is_bad[d.second] = 1;
-        after += std::log(d.first / m_limits.bad);
-      }
-      // a search has much to gain, or nothing
-      const double enough =
-        m_parameters.use_on_surface_steps ? 0.9 * before : before - 0.01 * double(worst.size());
-      if(!(after < enough))
-        return true;
-      before = after;
-      const bool goes_on =
-        m_parameters.use_on_surface_steps ? move_faces(worst) : visit(is_bad, m_small_selection);
-      if(!goes_on)
-        return false;
-    }
-    return true;
-  }
-
-  // Moves faces by steps on the surface, and by a search where these leave them as they were. Where the
-  // angles are finished, that searches, too: then only for what is far from good.
-  bool move_faces(const std::vector<std::pair<double, int>>& faces)
-  {
-    const Indexed_mesh& mesh = m_state.mesh;
-    const double bad = (finishes_angles() ? 4 : 1) * m_limits.bad;
-    std::vector<char> is_left(mesh.number_of_faces(), 0);
-    for(const std::pair<double, int>& d : faces)
-      is_left[d.second] = 1;
-    if(!visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2), Moves::on_surface,
-                      m_density))
-      return false;
-    bool searches = false;
-    m_limits.searched = std::numeric_limits<double>::infinity();
-    for(const std::pair<double, int>& d : faces)
-    {
-      const double density = face_density(m_state, m_density, d.second);
-      is_left[d.second] = density > bad && density > 0.8 * d.first;
-      if(!is_left[d.second])
-        continue;
-      searches = true;
-      m_limits.searched = (std::min)(m_limits.searched, 0.99 * density);
-    }
-    return !searches || visit_regions(faces_around(mesh, vertices_of(mesh, is_left), 2),
-                                      Moves::by_search, m_density);
+    // where the angles are finished, that searches, too
+    const double bad_for_search = (finishes_angles() ? 4 : 1) * m_limits.bad;
+    using Stage = Worst_faces_stage<ConcurrencyTag, Density>;
+    Stage stage(m_state, m_density, m_limits.bad, bad_for_search, &m_interruption);
+    return stage.run(
+      m_parameters.use_on_surface_steps,
+      [&](const std::vector<char>& faces, Moves moves, const typename Stage::Goal& goal) {
+        m_limits.worst = (std::min)(m_limits.worst, goal.worst);
+        m_limits.searched = goal.searched;
+        return moves == Moves::flattened ? visit(faces, m_small_selection)
+                                         : visit_regions(faces, moves, m_density);
+      });
   }
 
   bool finishes_angles() const
