@@ -22,10 +22,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Moves the vertices around bad elements one by one, each to the best of a few points of R around it.
-// Newton steps trust a model that is smooth; where R has a sharp vertex or a crease of the size of an
-// element the energy on R is not, and they end in front of it. A pattern search needs no model. It is
-// slow, but only the few elements that are left behind by the others are its business.
+// Moves the vertices around bad elements, one by one and those of one element together, each time to
+// the best of a few places on R around them. Newton steps trust a model that is smooth; where R has a
+// sharp vertex or a crease of the size of an element the energy on R is not, and they end in front of
+// it. A pattern search needs no model. It is slow, but only the few elements that are left behind by
+// the others are its business.
 class Search_mover
 {
 public:
@@ -72,6 +73,8 @@ public:
   double optimization_time() const { return m_optimization_time; }
 
 private:
+  static constexpr double first_reach = 0.3, last_reach = 0.01; // in mean edges at a vertex
+
   // what a vertex looks at: its elements and the drift around it, and whether its faces and their edges
   // are turned or folded, or further from R than they may be
   struct Star_measure
@@ -84,29 +87,25 @@ private:
     }
   };
 
+  // of the faces around the vertices that move
   template <typename Density>
-  double energy(const Patch& patch, const Density& density, int v) const
+  double energy(const Patch& patch, const Density& density) const
   {
-    const Indexed_mesh& mesh = patch.polygons;
     const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
     double sum = 0;
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-    {
-      const int f = mesh.corner_face[mesh.vertex_corners[k]];
+    for(const int f : m_star)
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         sum += element_energy(density, patch.elements[e], vertex);
-    }
     return sum;
   }
 
-  int defects(const Patch& patch, int v) const
+  int defects(const Patch& patch) const
   {
     const Indexed_mesh& mesh = patch.polygons;
     const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
     int count = 0;
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    for(const int f : m_star)
     {
-      const int f = mesh.corner_face[mesh.vertex_corners[k]];
       const Vector_3 normal = face_normal(mesh, vertex, f);
       count += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -116,21 +115,18 @@ private:
     return count;
   }
 
-  // the drift of the faces around a vertex
-  Star_measure drift(const Patch& patch, int v) const
+  Star_measure drift(const Patch& patch) const
   {
     Star_measure m;
     if(patch.samples.empty())
       return m;
-    const Indexed_mesh& mesh = patch.triangles();
     const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
     const auto add = [&](double distance, double bound) {
       m.energy += patch.barrier.value(distance, bound);
       m.defects += distance > Drift_barrier::last_part * bound;
     };
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    for(const int t : m_triangles)
     {
-      const int t = mesh.corner_face[mesh.vertex_corners[k]];
       for(int i = 0; i < 4; ++i)
       {
         const int s = sample_of(patch, t, i);
@@ -150,6 +146,23 @@ private:
     return m;
   }
 
+  // the faces and triangles around some vertices
+  void collect_star(const Patch& patch, const std::vector<int>& vertices)
+  {
+    const auto collect = [&](const Indexed_mesh& mesh, std::vector<int>& faces) {
+      faces.clear();
+      for(const int v : vertices)
+        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+        {
+          const int f = mesh.corner_face[mesh.vertex_corners[k]];
+          if(std::find(faces.begin(), faces.end(), f) == faces.end())
+            faces.push_back(f);
+        }
+    };
+    collect(patch.polygons, m_star);
+    collect(patch.triangles(), m_triangles);
+  }
+
   void sort_guests(const Patch& patch)
   {
     m_guests.assign(patch.polygons.number_of_faces(), {});
@@ -157,70 +170,112 @@ private:
       m_guests[patch.guests[g].polygon].push_back(int(g));
   }
 
-  // the vertices of bad elements that may move, and those around them
+  // vertices that move at once, and how far they look
+  struct Group
+  {
+    std::vector<int> vertices;
+    double reach = first_reach;
+  };
+
+  bool may_move(const Patch& patch, int v) const { return patch.is_free[v] && !patch.slides(v); }
+
   template <typename Density>
-  std::vector<int> collect(const Patch& patch, const Density& density) const
+  bool is_bad(const Density& density, const Element_set::Element& element) const
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_placed[v]; };
+    return element_energy(density, element, vertex) > m_bad ||
+           smallest_angle_cosine(element, vertex) > m_sharp;
+  }
+
+  // The vertices of bad elements, and those around them, one by one; then two and three of the same bad
+  // element: together they may go where each alone would be in the way of the others, as between a
+  // crease and an edge that would fold.
+  template <typename Density>
+  void collect_groups(const Patch& patch, const Density& density)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_placed[v]; };
     std::vector<char> is_wanted(patch.vertices.size(), 0);
-    for(const Element_set::Element& e : patch.elements)
-      if(element_energy(density, e, vertex) > m_bad || smallest_angle_cosine(e, vertex) > m_sharp)
-        for(const int v : e.vertices)
-          for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-          {
-            const int c = mesh.vertex_corners[k];
-            is_wanted[v] = is_wanted[mesh.target(c)] = is_wanted[mesh.source(mesh.previous(c))] = 1;
-          }
-    std::vector<int> vertices;
+    std::vector<Group> together;
+    for(const Element_set::Element& element : patch.elements)
+    {
+      if(!is_bad(density, element))
+        continue;
+      std::vector<int> free;
+      for(const int v : element.vertices)
+      {
+        if(may_move(patch, v))
+          free.push_back(v);
+        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+        {
+          const int c = mesh.vertex_corners[k];
+          is_wanted[v] = is_wanted[mesh.target(c)] = is_wanted[mesh.source(mesh.previous(c))] = 1;
+        }
+      }
+      for(std::size_t i = 0; i < free.size(); ++i)
+        for(std::size_t j = i + 1; j < free.size(); ++j)
+          together.push_back({{free[i], free[j]}});
+      if(free.size() == 3)
+        together.push_back({free});
+    }
+    m_groups.clear();
     for(int v = 0; v < int(is_wanted.size()); ++v)
-      if(is_wanted[v] && patch.is_free[v] && !patch.slides(v))
-        vertices.push_back(v);
-    return vertices;
+      if(is_wanted[v] && may_move(patch, v))
+        m_groups.push_back({{v}});
+    m_groups.insert(m_groups.end(), together.begin(), together.end());
   }
 
   template <typename Density>
   bool search(const Patch& patch, const Density& density)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const std::vector<int> vertices = collect(patch, density);
-    const double first_reach = 0.3, last_reach = 0.01; // in mean edges at the vertex
     const int maximum_sweeps = 40;
     sort_guests(patch);
     m_length.assign(patch.vertices.size(), 0);
-    m_reach.assign(vertices.size(), first_reach);
-    bool has_moved = false, goes_on = !vertices.empty();
+    collect_groups(patch, density);
+    bool has_moved = false, goes_on = true;
     for(int sweep = 0; goes_on && sweep < maximum_sweeps; ++sweep)
     {
       goes_on = false;
-      for(std::size_t i = 0; i < vertices.size(); ++i)
+      for(std::size_t i = 0; i < m_groups.size(); ++i)
       {
-        const int v = vertices[i];
-        if(m_reach[i] < last_reach)
+        Group& group = m_groups[i];
+        if(group.reach < last_reach)
           continue;
         goes_on = true;
         check_now_and_then(m_interruption, int(i));
+        const int v = group.vertices.front();
         double edge = 0;
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
           edge +=
             (m_placed[mesh.target(mesh.vertex_corners[k])].position - m_placed[v].position).norm();
         edge /= mesh.vertex_begin[v + 1] - mesh.vertex_begin[v];
-        if(improve(patch, density, v, m_reach[i] * edge))
+        if(improve(patch, density, group.vertices, group.reach * edge))
         {
           has_moved = true;
-          m_reach[i] = (std::min)(first_reach, 1.5 * m_reach[i]);
+          group.reach = (std::min)(first_reach, 1.5 * group.reach);
           // what is around has changed: it is looked at again
-          for(std::size_t j = 0; j < vertices.size(); ++j)
-            if(m_reach[j] < last_reach && are_neighbours(mesh, v, vertices[j]))
-              m_reach[j] = 4 * last_reach;
+          for(Group& other : m_groups)
+            if(other.reach < last_reach && are_neighbours(mesh, group.vertices, other.vertices))
+              other.reach = 4 * last_reach;
         }
         else
-          m_reach[i] *= 0.5;
+          group.reach *= 0.5;
       }
     }
-    for(const int v : vertices)
+    for(std::size_t v = 0; v < m_placed.size(); ++v)
       m_length[v] = (m_placed[v].position - patch.placed[v].position).norm();
     return has_moved;
+  }
+
+  static bool are_neighbours(const Indexed_mesh& mesh,
+                             const std::vector<int>& first,
+                             const std::vector<int>& second)
+  {
+    for(const int v : first)
+      for(const int w : second)
+        if(v == w || are_neighbours(mesh, v, w))
+          return true;
+    return false;
   }
 
   static bool are_neighbours(const Indexed_mesh& mesh, int v, int w)
@@ -234,44 +289,63 @@ private:
     return false;
   }
 
-  // takes a vertex to the best of eight points at the given distance, if one is better than its own
+  // takes a vertex to the best of eight places at the given distance, or several vertices, all the same
+  // way, to the best of four, if that is better than their own
   template <typename Density>
-  bool improve(const Patch& patch, const Density& density, int v, double reach)
+  bool
+  improve(const Patch& patch, const Density& density, const std::vector<int>& group, double reach)
   {
-    const Placed_vertex here = m_placed[v];
-    const Tangent_frame frame = tangent_frame(here.normal);
-    Star_measure best = drift(patch, v);
-    best.energy += energy(patch, density, v);
-    best.defects += defects(patch, v);
-    Placed_vertex best_place = here;
+    collect_star(patch, group);
+    m_here.clear();
+    for(const int v : group)
+      m_here.push_back(m_placed[v]);
+    Vector_3 normal = Vector_3::Zero();
+    for(const Placed_vertex& here : m_here)
+      normal += here.normal;
+    const Tangent_frame frame = tangent_frame(normal);
+    Star_measure best = drift(patch);
+    best.energy += energy(patch, density);
+    best.defects += defects(patch);
+    m_best_places = m_here;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
     const double directions[8][2] = {
       {1, 0},  {diagonal, diagonal},   {0, 1},  {-diagonal, diagonal},
       {-1, 0}, {-diagonal, -diagonal}, {0, -1}, {diagonal, -diagonal}};
-    for(const double(&d)[2] : directions)
+    const auto put = [&](const std::vector<Placed_vertex>& places) {
+      for(std::size_t i = 0; i < group.size(); ++i)
+        m_placed[group[i]] = places[i];
+    };
+    const auto go = [&](const Vector_3& way) {
+      for(std::size_t i = 0; i < group.size(); ++i)
+        if(!step_on_surface(m_reference, m_here[i], way, m_placed[group[i]]))
+          return false;
+      return true;
+    };
+    const int stride = group.size() > 1 ? 2 : 1;
+    for(int k = 0; k < 8; k += stride)
     {
-      Placed_vertex& there = m_placed[v];
-      if(step_on_surface(m_reference, here, reach * (frame * Vector_2(d[0], d[1])), there))
+      if(go(reach * (frame * Vector_2(directions[k][0], directions[k][1]))))
       {
         // drift and defects are costly to measure
-        Star_measure m{energy(patch, density, v), 0};
+        Star_measure m{energy(patch, density), 0};
         if(m < best)
         {
-          const Star_measure d = drift(patch, v);
+          const Star_measure d = drift(patch);
           m.energy += d.energy;
-          m.defects = d.defects + defects(patch, v);
+          m.defects = d.defects + defects(patch);
         }
         if(m < best)
         {
           best = m;
-          best_place = there;
           found = true;
+          for(std::size_t i = 0; i < group.size(); ++i)
+            m_best_places[i] = m_placed[group[i]];
         }
       }
-      m_placed[v] = here;
+      put(m_here);
     }
-    m_placed[v] = best_place;
+    put(m_best_places);
     return found;
   }
 
@@ -280,8 +354,11 @@ private:
   double m_bad = std::numeric_limits<double>::infinity();
   double m_sharp = 1;
   std::vector<Placed_vertex> m_placed;
-  std::vector<std::vector<int>> m_guests; // per polygon
-  std::vector<double> m_length, m_reach;
+  std::vector<std::vector<int>> m_guests;           // per polygon
+  std::vector<int> m_star, m_triangles;             // around the vertices that move
+  std::vector<Placed_vertex> m_here, m_best_places; // of these
+  std::vector<Group> m_groups;
+  std::vector<double> m_length; // per vertex: of its way
   double m_optimization_time = 0;
 };
 
