@@ -223,8 +223,8 @@ run() {
   targets=$(targets_of "$build" "$wanted")
   begin=$SECONDS
   if [ -n "$targets" ]; then
-    # shellcheck disable=SC2086 # one word a target
-    cmake --build "$build" --parallel "$jobs" --target $targets >"$log.build.txt" 2>&1 ||
+    # targets that are named together would be built one after the other
+    xargs -n 1 -P "$jobs" cmake --build "$build" --target <<<"$targets" >"$log.build.txt" 2>&1 ||
       { grep -A 5 -m 5 -E 'error:|Error ' "$log.build.txt"; return 1; }
   fi
   echo "build $((SECONDS - begin))" >>"$result"
