@@ -2,11 +2,13 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Several data structures, kernels and number types, parts of a mesh, and where its vertices are on R.
+// Several data structures, kernels and number types, units and places, parts of a mesh, and where its
+// vertices are on R.
 
 #include "test_meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
+#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
@@ -313,9 +315,143 @@ void test_mixed_faces()
   }
 }
 
+// ------------------------------------------------------------------------- units and places
+
+struct Place
+{
+  double factor = 1;
+  Vector_3 shift = Vector_3::Zero(); // after it
+  Vector_3 operator()(const Vector_3& p) const { return factor * p + shift; }
+};
+
+Mesh moved_mesh(Shape shape, const Place& place)
+{
+  for(Vector_3& p : shape.points)
+    p = place(p);
+  return make_mesh<Mesh>(shape);
+}
+
+// Optimizes in several units and places; `optimize(mesh, reference, factor)` is what is done. Results
+// have to be the same but for what coordinates lose by rounding.
+template <typename Optimize>
+void check_places(const Shape& shape, const Shape& regular, bool is_own, const Optimize& optimize)
+{
+  const auto run = [&](const Place& place, Mesh& mesh) {
+    mesh = moved_mesh(shape, place);
+    return is_own ? optimize(mesh, mesh, place.factor)
+                  : optimize(mesh, moved_mesh(regular, place), place.factor);
+  };
+  Mesh first;
+  const RCO::Result expected = run(Place(), first);
+  const Shape a = make_shape(first);
+  RCO_CHECK_LESS(0u, expected.number_of_accepted_patches);
+  for(const Place& place : {Place{1e6, {0, 0, 0}}, Place{1e-6, {0, 0, 0}}, Place{0.0254, {0, 0, 0}},
+                            Place{1, {2e3, -3e3, 1e3}}, Place{1e-6, {-5e-3, 1e-3, 0}}})
+  {
+    Mesh mesh;
+    const RCO::Result r = run(place, mesh);
+    RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 1e-11 * expected.final_energy);
+    RCO_CHECK_EQUAL(r.number_of_patches, expected.number_of_patches);
+    RCO_CHECK_NEAR(r.drift_bound, place.factor * expected.drift_bound, 1e-9 * r.drift_bound);
+    RCO_CHECK_NEAR(r.initial_drift, place.factor * expected.initial_drift, 1e-9 * r.drift_bound);
+    RCO_CHECK_NEAR(r.drift, place.factor * expected.drift, 1e-9 * r.drift_bound);
+    const Shape b = make_shape(mesh);
+    const double rounding = 1e-15 * (10 * place.factor + place.shift.norm());
+    for(std::size_t v = 0; v < a.points.size(); ++v)
+      RCO_CHECK_LESS_EQUAL((b.points[v] - place(a.points[v])).norm(), rounding);
+  }
+}
+
+void test_places()
+{
+  const Scope scope("units and places");
+  const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
+  const auto angles = [](auto& mesh, const Mesh& reference, double) {
+    return CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
+  };
+  {
+    const Scope s("a mesh and its reference");
+    check_places(rough, regular, false, angles);
+  }
+  {
+    const Scope s("its own reference");
+    check_places(rough, rough, true, angles);
+  }
+  {
+    const Scope s("coordinates that are all on a grid, in a plane, with a border that slides");
+    check_places(scrambled(plane_grid(16, 16), 0.3, 9, onto_plane), plane_grid(16, 16), false,
+                 [](Mesh& mesh, const Mesh& reference, double) {
+                   return CGAL::reference_constrained_optimize(
+                     mesh, reference, RCO::Minimum_angle_energy(), params::relax_constraints(true));
+                 });
+  }
+  {
+    const Scope s("a bound that is given is told as it was given");
+    check_places(rough, rough, true, [](Mesh& mesh, const Mesh& reference, double factor) {
+      const RCO::Result r = CGAL::reference_constrained_optimize(
+        mesh, reference, RCO::Minimum_angle_energy(), params::drift_bound(0.03 * factor));
+      RCO_CHECK_EQUAL(r.drift_bound, 0.03 * factor);
+      return r;
+    });
+  }
+  {
+    const Scope s("rest shapes that are scaled to the reference");
+    const Mesh source = make_mesh<Mesh>(regular);
+    check_places(rough, regular, false, [&](Mesh& mesh, const Mesh& reference, double) {
+      return CGAL::reference_constrained_optimize(mesh, reference,
+                                                  RCO::Compatible_remeshing_energy(source));
+    });
+  }
+  {
+    const Scope s("distances that are told");
+    Shape off = rough;
+    off.points[7] += Vector_3(0, 0, 0.1);
+    Mesh mesh = make_mesh<Mesh>(off), large = moved_mesh(off, {1e6, {0, 0, 0}});
+    const double near = angles(mesh, make_mesh<Mesh>(regular), 1).largest_initial_distance,
+                 far =
+                   angles(large, moved_mesh(regular, {1e6, {0, 0, 0}}), 1).largest_initial_distance;
+    RCO_CHECK(near > 0.01 && near <= 0.1 + 1e-3);
+    RCO_CHECK_NEAR(far, 1e6 * near, 1e-9 * far);
+    off.points[7] += Vector_3(0, 0, 10);
+    mesh = moved_mesh(off, {1e6, {0, 0, 0}});
+    RCO_CHECK_THROWS(angles(mesh, moved_mesh(regular, {1e6, {0, 0, 0}}), 1), RCO::Invalid_input,
+                     "e+06 away");
+  }
+}
+
+void test_frame()
+{
+  const Scope scope("canonical frame");
+  using namespace RCO::internal;
+  const auto copy_of = [](const Shape& shape) { return Mesh_copy{indexed(shape), shape.points}; };
+  const Mesh_copy regular = copy_of(torus(40, 20));
+  const Canonical_frame frame(regular, regular);
+  RCO_CHECK(frame.resolution() > 0 && frame.resolution() < 1e-7);
+  for(std::size_t v = 0; v < regular.points.size(); ++v)
+  {
+    const Vector_3 p = (regular.points[v] - regular.points[0]) / frame.unit(),
+                   q = frame(regular.points[v]) - frame(regular.points[0]);
+    RCO_CHECK_LESS_EQUAL((p - q).cwiseAbs().maxCoeff(), frame.resolution() * (1 + 1e-6));
+  }
+  // a face without area might get one, and a wrong one
+  Shape thin = torus(40, 20);
+  thin.points[1] = 0.5 * (thin.points[0] + thin.points[2]);
+  thin.points[41] = 0.5 * (thin.points[0] + thin.points[1]);
+  const Mesh_copy degenerate = copy_of(thin);
+  for(const Canonical_frame& none :
+      {Canonical_frame(regular, degenerate), Canonical_frame(degenerate, regular)})
+  {
+    RCO_CHECK_EQUAL(none.resolution(), 0.);
+    RCO_CHECK_EQUAL(none.unit(), 1.);
+    RCO_CHECK(same_bits(none(thin.points[1]), thin.points[1]));
+  }
+}
+
 int main()
 {
   test_models();
+  test_places();
+  test_frame();
   test_mixed_faces();
   test_locations();
   test_ranges();

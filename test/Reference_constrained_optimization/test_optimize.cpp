@@ -36,6 +36,9 @@ struct Stopped : std::runtime_error
   Stopped() : std::runtime_error("the visitor stops") {}
 };
 
+// what the canonical frame rounds may show in the energies that a visitor is told of
+const double on_the_way = 1e-4;
+
 // Tests every patch and adds up what it is told; stops when told to.
 struct Recorder : RCO::Default_visitor
 {
@@ -47,7 +50,7 @@ struct Recorder : RCO::Default_visitor
   double energy_change = 0;
   std::size_t finishing = 0; // accepted patches of the finishing stage
   long defect_change = 0;
-  std::vector<double> energies;
+  std::vector<double> energies, changes; // at the end of each iteration, the latter from the start
 
   void on_iteration_begin(std::size_t i)
   {
@@ -62,6 +65,7 @@ struct Recorder : RCO::Default_visitor
     ++iterations;
     questions_of_iterations = questions;
     energies.push_back(energy);
+    changes.push_back(energy_change);
   }
   void on_round_begin(std::size_t n)
   {
@@ -331,16 +335,15 @@ Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
   {
     const double elements =
       double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1);
+    for(std::size_t i = 1; i < seen.energies.size(); ++i)
+      RCO_CHECK_NEAR((seen.energies[i] - seen.energies[i - 1]) * elements,
+                     seen.changes[i] - seen.changes[i - 1], 1e-8 * r.initial_energy * elements);
     RCO_CHECK_NEAR((r.final_energy - r.initial_energy) * elements, seen.energy_change,
-                   1e-8 * r.initial_energy * elements * (unit / 2.3e-16));
+                   on_the_way * r.initial_energy * elements);
   }
-  double previous = r.initial_energy;
-  for(const double e : seen.energies)
-  {
-    if(defects_before == 0)
-      RCO_CHECK_LESS_EQUAL(e, previous * (1 + 1e-12));
-    previous = e;
-  }
+  for(std::size_t i = 0; i < seen.energies.size() && defects_before == 0; ++i)
+    RCO_CHECK_LESS_EQUAL(seen.energies[i], i == 0 ? r.initial_energy * (1 + on_the_way)
+                                                  : seen.energies[i - 1] * (1 + 1e-12));
   RCO_CHECK(r.running_time >= 0);
   if(r.status == RCO::Status::nothing_to_do)
     RCO_CHECK(r.number_of_iterations == 0);
@@ -852,7 +855,7 @@ void test_endings()
     const double n = double(rough.faces.size());
     if(out.recorder.finishing == 0)
       RCO_CHECK_NEAR(m.energy * n, complete.result.initial_energy * n + out.recorder.energy_change,
-                     1e-7 * complete.result.initial_energy * n);
+                     on_the_way * complete.result.initial_energy * n);
     if(out.recorder.accepted > 0)
       RCO_CHECK_LESS(out.recorder.energy_change, 0.);
   }
@@ -990,7 +993,7 @@ void test_drift(const std::string& name)
     }
     else
     {
-      RCO_CHECK_NEAR(result.drift_bound, bound < 0 ? 0.25 * edge : bound, 1e-12 * edge);
+      RCO_CHECK_NEAR(result.drift_bound, bound < 0 ? 0.25 * edge : bound, 1e-6 * edge);
       RCO_CHECK_LESS_EQUAL(result.initial_drift, 1e-12 * edge);
       RCO_CHECK_LESS_EQUAL(drift, result.drift + 1e-12 * edge);
       RCO_CHECK_LESS_EQUAL(result.drift, 1.2 * result.drift_bound);

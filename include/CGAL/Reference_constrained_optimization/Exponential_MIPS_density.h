@@ -84,7 +84,7 @@ private:
   double at(double determinant, double squared_norm) const
   {
     const double r = squared_norm > 0 ? determinant / squared_norm : 0;
-    return r < m_threshold ? of_ratio(r).value : std::exp(m_factor / r);
+    return r < m_threshold ? of_ratio(r).value : std::exp(m_factor * (1 / r));
   }
 
   struct Ratio_jet

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Energy_element.h>
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 
 #include <array>
 #include <cmath>
@@ -33,7 +34,8 @@ public:
   template <typename Energy>
   Element_set(const Energy& energy,
               const Energy_context& context,
-              const std::vector<char>& is_in_range = std::vector<char>())
+              const std::vector<char>& is_in_range = std::vector<char>(),
+              const Canonical_frame& frame = Canonical_frame())
   {
     const std::size_t n = context.number_of_faces();
     m_begin.reserve(n + 1);
@@ -62,7 +64,8 @@ public:
                                 " names a corner that the face does not have");
           element.vertices[i] = context.vertex(f, e.corners[i]);
         }
-        element.rest_inverse = e.rest.inverse();
+        const Eigen::Matrix2d rest = e.rest.unaryExpr([&](double x) { return frame.length(x); });
+        element.rest_inverse = rest.inverse();
         element.is_in_quad = context.degree(f) > 3;
         m_elements.push_back(element);
       }

@@ -238,6 +238,17 @@ inline double mean_edge_length(const Indexed_mesh& mesh, const std::vector<Vecto
   return count == 0 ? 0 : sum / double(count);
 }
 
+// the mean length of the edges at a vertex; `point(v)` is the position of one
+template <typename PointAccess>
+double mean_edge_length_at(const Indexed_mesh& mesh, const PointAccess& point, int v)
+{
+  const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
+  double sum = 0;
+  for(int k = begin; k < end; ++k)
+    sum += (point(mesh.target(mesh.vertex_corners[k])) - point(v)).norm();
+  return begin < end ? sum / (end - begin) : 0;
+}
+
 inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
 {
   double sum = 0;
@@ -259,6 +270,9 @@ inline double bounding_box_diagonal(const Indexed_mesh& mesh, const std::vector<
   }
   return (high - low).norm();
 }
+
+// whether fourth powers of lengths, those of small edges too, stay in the range of double
+inline bool is_safe_diagonal(double diagonal) { return diagonal > 1e-60 && diagonal < 1e60; }
 
 // `point(v)` is the position of a vertex
 template <typename PointAccess>

@@ -67,7 +67,20 @@ struct Optimization_state
   std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
 
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
+
+  // what is not optimized may be where it likes
+  bool has_face_that_counts(int v) const
+  {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      if(counts(mesh.corner_face[mesh.vertex_corners[k]]))
+        return true;
+    return false;
+  }
 };
+
+// A cosine: what comes as close as that to being turned over or folded counts as if it were. Rounding
+// to the canonical frame cannot hide anything then.
+constexpr double frame_caution = 3e-3;
 
 // Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
 // whether an edge is folded, for vertices given by a function `vertex(v)` that returns a
@@ -85,12 +98,17 @@ Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f
 }
 
 template <typename VertexAccess>
-bool is_flipped(const Indexed_mesh& mesh, const VertexAccess& vertex, int f, const Vector_3& normal)
+bool is_flipped(const Indexed_mesh& mesh,
+                const VertexAccess& vertex,
+                int f,
+                const Vector_3& normal,
+                double caution = frame_caution)
 {
   Vector_3 sum = Vector_3::Zero();
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     sum += vertex(mesh.corner_vertex[c]).normal;
-  return normal.dot(sum) < 0;
+  const double d = normal.dot(sum);
+  return d < 0 || d * d < caution * caution * normal.squaredNorm() * sum.squaredNorm();
 }
 
 template <typename VertexAccess>
@@ -109,9 +127,10 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
   return false;
 }
 
-inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
+inline bool
+is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution = frame_caution)
 {
-  return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
+  return normal_a.dot(normal_b) < (caution - 0.5) * normal_a.norm() * normal_b.norm();
 }
 
 // Jacobian of one element on the surface
@@ -178,7 +197,10 @@ struct Global_measure
 };
 
 template <typename ConcurrencyTag, typename Density>
-Global_measure measure(const Optimization_state& state, const Density& density, double cap)
+Global_measure measure(const Optimization_state& state,
+                       const Density& density,
+                       double cap,
+                       double caution = frame_caution)
 {
   const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
@@ -193,11 +215,12 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     Global_measure& m = parts[block];
     for(int f = begin; f < end; ++f)
     {
-      m.flips += is_flipped(mesh, vertex, f, normals[f]);
+      m.flips += is_flipped(mesh, vertex, f, normals[f], caution);
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] > c)
-          m.fold_edges += is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
+          m.fold_edges +=
+            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], caution);
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);

@@ -50,9 +50,7 @@ public:
   {
     split(copy);
     m_diagonal = bounding_box_diagonal(m_mesh, m_points);
-    // fourth powers of lengths, those of small edges too, must stay in the range of double
-    const double smallest = 1e-60, largest = 1e60;
-    if(m_diagonal > 0 && !(m_diagonal > smallest && m_diagonal < largest))
+    if(m_diagonal > 0 && !is_safe_diagonal(m_diagonal))
       throw Invalid_input("reference: its diagonal is not between 1e-60 and 1e60: other units of "
                           "length are needed");
     if(!has_area(m_mesh, [this](int v) -> const Vector_3& { return m_points[v]; }))

@@ -230,7 +230,7 @@ private:
     const Indexed_mesh& mesh = patch.polygons;
     const int maximum_sweeps = 40;
     sort_guests(patch);
-    m_length.assign(patch.vertices.size(), 0);
+    m_length.resize(patch.vertices.size());
     collect_groups(patch, density);
     bool has_moved = false, goes_on = true;
     for(int sweep = 0; goes_on && sweep < maximum_sweeps; ++sweep)
@@ -244,11 +244,8 @@ private:
         goes_on = true;
         check_now_and_then(m_interruption, int(i));
         const int v = group.vertices.front();
-        double edge = 0;
-        for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-          edge +=
-            (m_placed[mesh.target(mesh.vertex_corners[k])].position - m_placed[v].position).norm();
-        edge /= mesh.vertex_begin[v + 1] - mesh.vertex_begin[v];
+        const double edge = mean_edge_length_at(
+          mesh, [&](int w) -> const Vector_3& { return m_placed[w].position; }, v);
         if(improve(patch, density, group.vertices, group.reach * edge))
         {
           has_moved = true;

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -213,15 +212,10 @@ double rest_energy(const Optimization_state& state, const Density& density)
 inline std::vector<double> vertex_edge_lengths(const Indexed_mesh& mesh,
                                                const std::vector<Vector_3>& points)
 {
-  std::vector<double> lengths(mesh.number_of_vertices(), 0);
+  std::vector<double> lengths(mesh.number_of_vertices());
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
-  {
-    const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
-    for(int k = begin; k < end; ++k)
-      lengths[v] += (points[mesh.target(mesh.vertex_corners[k])] - points[v]).norm();
-    if(end > begin)
-      lengths[v] /= end - begin;
-  }
+    lengths[v] = mean_edge_length_at(
+      mesh, [&](int w) -> const Vector_3& { return points[w]; }, v);
   return lengths;
 }
 

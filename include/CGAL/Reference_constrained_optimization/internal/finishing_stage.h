@@ -205,7 +205,7 @@ private:
     const Indexed_mesh& mesh = m_state.mesh;
     m_wanted.list.clear();
     m_wanted.is_in.assign(m_angles.size(), 0);
-    const auto want = [&](int f) {
+    const auto add = [&](int f) {
       if(!m_wanted.is_in[f])
       {
         m_wanted.is_in[f] = 1;
@@ -228,14 +228,14 @@ private:
     {
       for(const int f : m_low)
         if(m_rings[f] >= rings)
-          want(f);
+          add(f);
       for(std::size_t i = 0, end = m_wanted.list.size(); i < end; ++i)
         for(int c = mesh.face_begin[m_wanted.list[i]]; c < mesh.face_begin[m_wanted.list[i] + 1];
             ++c)
         {
           const int v = mesh.corner_vertex[c];
           for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-            want(mesh.corner_face[mesh.vertex_corners[k]]);
+            add(mesh.corner_face[mesh.vertex_corners[k]]);
         }
     }
   }

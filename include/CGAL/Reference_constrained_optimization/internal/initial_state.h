@@ -127,7 +127,8 @@ void place_on_reference(const std::vector<Vector_3>& points,
                         Reference_surface& reference,
                         Optimization_state& state,
                         Result& result,
-                        Interruption* interruption = nullptr)
+                        Interruption* interruption = nullptr,
+                        const Canonical_frame& frame = Canonical_frame())
 {
   const Indexed_mesh& mesh = state.mesh;
   const double limit = 0.1 * reference.diagonal();
@@ -135,7 +136,7 @@ void place_on_reference(const std::vector<Vector_3>& points,
   const double largest =
     largest_coordinate(mesh, [&](int v) -> const Vector_3& { return points[v]; });
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
-  const double touching = 1e-12 * reference.diagonal() + rounding;
+  const double touching = 1e-12 * reference.diagonal() + rounding + 2 * frame.resolution();
 
   const Indexed_mesh& surface = reference.mesh();
   const auto is_used = [&](int v) { return !surface.is_isolated(v); };
@@ -145,13 +146,6 @@ void place_on_reference(const std::vector<Vector_3>& points,
     const bool is_twin =
       v < surface.number_of_vertices() && is_used(v) && reference.points()[v] == points[v];
     return is_twin ? v : index.find(points[v]);
-  };
-  // what is not optimized may be where it likes
-  const auto is_needed = [&](int v) {
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-      if(state.counts(mesh.corner_face[mesh.vertex_corners[k]]))
-        return true;
-    return false;
   };
   state.vertices.resize(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
@@ -175,12 +169,11 @@ void place_on_reference(const std::vector<Vector_3>& points,
     if(mesh.is_isolated(v))
       continue;
     const double distance = (placed.on_reference.position - points[v]).norm();
-    if(distance > limit && is_needed(v))
-      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + text_of(distance) +
-                          " away from the reference, but at most " + text_of(limit) +
+    if(distance > limit && state.has_face_that_counts(v))
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " +
+                          text_of(distance * frame.unit()) +
+                          " away from the reference, but at most " + text_of(limit * frame.unit()) +
                           ", a tenth of the reference's diagonal, is allowed");
-    if(distance > result.largest_initial_distance && is_needed(v))
-      result.largest_initial_distance = distance;
     if(state.is_free[v])
     {
       ++result.number_of_free_vertices;

@@ -7,6 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
+#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
@@ -23,7 +25,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -50,6 +52,15 @@ bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
     return &mesh == &reference;
   else
     return false;
+}
+
+// Takes the points of a copy into the frame, and returns them as they were.
+inline std::vector<Vector_3> take_into(const Canonical_frame& frame, Mesh_copy& copy)
+{
+  std::vector<Vector_3> before = copy.points;
+  for(Vector_3& p : copy.points)
+    p = frame(p);
+  return before;
 }
 
 // What `optimize()` does; throws Interrupted if it is cut short before the mesh is on the reference, and
@@ -82,59 +93,84 @@ void optimize(const FaceRange& range,
     CGAL::get_const_property_map(CGAL::vertex_point, reference));
 
   interruption.check();
-  const Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
+  Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
   interruption.check();
   const bool is_own = is_own_reference(mesh, reference, np, np_reference);
-  const Mesh_copy other =
+  Mesh_copy other =
     is_own ? Mesh_copy() : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
   const Mesh_copy& reference_copy = is_own ? copy : other;
+  const Canonical_frame frame(reference_copy, copy);
+  const std::vector<Vector_3> mesh_points = take_into(frame, copy),
+                              other_points = take_into(frame, other);
+  const std::vector<Vector_3>& reference_points = is_own ? mesh_points : other_points;
   Reference_surface surface(reference_copy);
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return copy.points[v]; }))
     throw Invalid_input("mesh: every face has zero area");
   check_location_map(surface, np);
   interruption.check();
+  // energies are told of lengths as the caller knows them
   const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
-                               mean_edge_length(copy.mesh, copy.points),
-                               surface_area(copy.mesh, copy.points), surface.area());
+                               mean_edge_length(copy.mesh, mesh_points),
+                               surface_area(copy.mesh, mesh_points),
+                               surface_area(surface.mesh(), reference_points));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
-  const Element_set elements(energy, context, is_in_range);
+  const Element_set elements(energy, context, is_in_range, frame);
   interruption.check();
   Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}, is_in_range};
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
-  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption);
+  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
   // nothing of R would be closest to such a mesh
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
   if(loop_parameters.relax_constraints)
     Sliding_vertices(state, constraints,
                      read_reference_lines(reference, np_reference, reference_copy.mesh, surface),
-                     result);
+                     frame.resolution(), result);
+  Caller_view view(frame, mesh_points, reference_points, state);
+  view.remember_start();
+  result.largest_initial_distance = view.largest_distance();
   result.times.setup = seconds_since(start);
 
   const auto& density = energy.density();
   typedef typename std::decay<decltype(density)>::type Density;
-  const double infinity = std::numeric_limits<double>::infinity();
-  const Global_measure initial = measure<ConcurrencyTag>(state, density, infinity);
+  const Global_measure initial = view.measure<ConcurrencyTag>(density);
   const double number_of_elements = (std::max)(1, elements.size());
   result.initial_energy = initial.energy / number_of_elements;
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
 
+  Loop_parameters framed_parameters = loop_parameters;
+  if(std::isfinite(loop_parameters.drift_bound))
+    framed_parameters.drift_bound = frame.length(loop_parameters.drift_bound);
   const auto finish = [&]() {
-    write_points(mesh, vpm, copy.points, state);
-    write_locations(mesh, reference, np, state);
-    const Global_measure final = measure<ConcurrencyTag>(state, density, infinity);
+    Global_measure final = view.measure<ConcurrencyTag>(density);
+    // a gain that rounding to the frame made up is none
+    if(final.defects() == initial.defects() && final.energy > initial.energy)
+    {
+      view.return_to_start();
+      final = initial;
+    }
+    write_points(mesh, vpm, mesh_points, view);
+    write_locations(mesh, reference, np, state, view);
     result.final_energy = final.energy / number_of_elements;
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
+    // a bound that the caller gave is told as it was given
+    const double unit = frame.unit();
+    const bool is_given = result.drift_bound == framed_parameters.drift_bound;
+    result.drift_bound = is_given ? loop_parameters.drift_bound : unit * result.drift_bound;
+    // no less than the true ones: both ends of a distance may have been rounded
+    for(double* drift : {&result.initial_drift, &result.drift})
+      if(*drift > 0)
+        *drift = unit * (*drift + 4 * frame.resolution());
   };
   if(result.number_of_free_vertices > 0)
   {
-    Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, loop_parameters, visitor,
+    Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, framed_parameters, visitor,
                                                       result, interruption);
     try
     {

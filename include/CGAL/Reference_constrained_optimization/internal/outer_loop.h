@@ -180,7 +180,8 @@ private:
           (std::min)(largest_resistance, adapted_resistance(m_limits.strain_resistance,
                                                             progress.taken / progress.could_move));
       m_held_up = is_held_up() ? m_held_up + 1 : 0;
-      const bool divides = m_prizes_angles && m_held_up >= 2 && divide_further();
+      const int patience = 5; // large patches may go slowly, but they go further
+      const bool divides = m_prizes_angles && m_held_up >= patience && divide_further();
       const bool falls = has_fallen(before.capped_energy, after.capped_energy);
       const bool repairs =
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();

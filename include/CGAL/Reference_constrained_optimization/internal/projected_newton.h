@@ -294,9 +294,7 @@ private:
       // inverted already, or as good as: the density pushes it back, and may be trusted with that
       const double flat = 1e-3;
       const double area = shape.determinant();
-      const double squares = shape(0, 0) * shape(0, 0) + shape(1, 0) * shape(1, 0) +
-                             shape(0, 1) * shape(0, 1) + shape(1, 1) * shape(1, 1);
-      if(!(area > flat * squares))
+      if(!(area > flat * shape.squaredNorm()))
         continue;
       const std::array<int, 3>& t = problem.triples[e];
       const Vector_2 first = problem.corner_map(e, 0) * motion(t[0]);

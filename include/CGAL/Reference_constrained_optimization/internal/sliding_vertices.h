@@ -34,8 +34,10 @@ public:
   Sliding_vertices(Optimization_state& state,
                    const Constraints& constraints,
                    const Reference_lines& lines,
+                   double resolution,
                    Result& result)
     : m_state(state),
+      m_touching((std::max)(1e-9 * state.reference.diagonal(), 4 * resolution)),
       m_result(result)
   {
     const Indexed_mesh& mesh = state.mesh;
@@ -117,8 +119,13 @@ private:
     {
       const Vector_3 middle = 0.5 * (here.position + m_state.vertices[w].on_reference.position);
       const Surface_point foot = reference.descend(middle, here.face);
-      if((foot.position - middle).norm() > 1e-9 * reference.diagonal() ||
-         foot.barycentric.minCoeff() > 1e-6)
+      int i = 0; // the corner that the closest edge is opposite to
+      const double part = foot.barycentric.minCoeff(&i);
+      const double side = (reference.corner_point(foot.face, (i + 1) % 3) -
+                           reference.corner_point(foot.face, (i + 2) % 3))
+                            .norm();
+      const double height = reference.face_normal(foot.face).norm() / side;
+      if((foot.position - middle).norm() > m_touching || part * height > m_touching)
         return false;
     }
     return true;
@@ -151,7 +158,6 @@ private:
   void release(int v, const Line_point& where)
   {
     Placed_vertex& placed = m_state.vertices[v];
-    const Vector_3 before = placed.position;
     placed.on_line = where;
     if(!place_on_line(m_state.lines, m_state.reference, placed))
     {
@@ -160,11 +166,10 @@ private:
     }
     m_state.is_free[v] = 1;
     ++m_result.number_of_free_vertices;
-    m_result.largest_initial_distance =
-      (std::max)(m_result.largest_initial_distance, (placed.position - before).norm());
   }
 
   Optimization_state& m_state;
+  double m_touching;
   Result& m_result;
 };
 

@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITE_BACK_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITE_BACK_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/property_map.h>
@@ -26,13 +26,13 @@ template <typename PolygonMesh, typename VertexPointMap>
 void write_points(const PolygonMesh& g,
                   const VertexPointMap& vpm,
                   const std::vector<Vector_3>& before,
-                  const Optimization_state& state)
+                  const Caller_view& view)
 {
   typedef typename boost::property_traits<VertexPointMap>::value_type Point;
-  std::size_t i = 0;
+  int i = 0;
   for(const auto v : vertices(g))
   {
-    const Vector_3& p = state.vertices[i].position;
+    const Vector_3 p = view.position(i);
     if(p != before[i])
       put(vpm, v, Point(p.x(), p.y(), p.z()));
     ++i;
@@ -57,7 +57,8 @@ template <typename PolygonMesh, typename ReferenceMesh, typename NamedParameters
 void write_locations(const PolygonMesh& g,
                      const ReferenceMesh& reference,
                      const NamedParameters& np,
-                     const Optimization_state& state)
+                     const Optimization_state& state,
+                     const Caller_view& view)
 {
   if constexpr(!parameters::is_default_parameter<NamedParameters,
                                                  internal_np::vertex_location_map_t>::value)
@@ -65,15 +66,17 @@ void write_locations(const PolygonMesh& g,
     auto map = parameters::get_parameter(np, internal_np::vertex_location_map);
     const std::vector<typename boost::graph_traits<ReferenceMesh>::face_descriptor> all_faces(
       faces(reference).begin(), faces(reference).end());
-    std::size_t i = 0;
+    int i = -1;
     for(const auto v : vertices(g))
     {
-      const Surface_point& p = state.vertices[i++].on_reference;
-      if(p.face >= 0)
-        put(map, v,
-            std::make_pair(
-              all_faces[state.reference.original_face(p.face)],
-              std::array<double, 3>{{p.barycentric(2), p.barycentric(0), p.barycentric(1)}}));
+      ++i;
+      if(state.mesh.is_isolated(i))
+        continue;
+      const Surface_point p = view.location(i);
+      put(map, v,
+          std::make_pair(
+            all_faces[state.reference.original_face(p.face)],
+            std::array<double, 3>{{p.barycentric(2), p.barycentric(0), p.barycentric(1)}}));
     }
   }
 }

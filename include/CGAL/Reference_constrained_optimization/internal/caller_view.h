@@ -1,0 +1,120 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CALLER_VIEW_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CALLER_VIEW_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// The vertices of a state in the caller's coordinates: a location on the reference means the same in
+// both. Vertices that lie on the caller's reference keep their bits until they move.
+class Caller_view
+{
+public:
+  // the caller's points; `reference` may be `mesh`
+  Caller_view(const Canonical_frame& frame,
+              const std::vector<Vector_3>& mesh,
+              const std::vector<Vector_3>& reference,
+              Optimization_state& state)
+    : m_frame(frame),
+      m_mesh(mesh),
+      m_reference(reference),
+      m_state(state),
+      m_rounding(4 * std::numeric_limits<double>::epsilon() *
+                 largest_coordinate(state.mesh, [&](int v) -> const Vector_3& { return mesh[v]; }))
+  {}
+
+  // to be called when all vertices are placed and none has moved
+  void remember_start()
+  {
+    for(const Placed_vertex& v : m_state.vertices)
+      m_start.push_back(v.position);
+  }
+
+  // from now on no vertex has moved
+  void return_to_start() { m_has_returned = true; }
+
+  // where a vertex' point of the reference is
+  Surface_point location(int v) const
+  {
+    Surface_point s = m_state.vertices[v].on_reference;
+    const Indexed_mesh& surface = m_state.reference.mesh();
+    const auto point = [&](int w) -> const Vector_3& { return m_reference[w]; };
+    s.position.setZero();
+    for(int i = 0; i < 3; ++i)
+      s.position += s.barycentric(i) * point(surface.corner_vertex[surface.face_begin[s.face] + i]);
+    const bool slides = !m_has_returned && m_state.vertices[v].on_line.segment >= 0;
+    if(has_moved(v) || slides || s.position == m_mesh[v])
+      return s;
+    const Foot foot = descend_to(surface, point, m_mesh[v], s.face);
+    return {foot.position, foot.face, foot.barycentric};
+  }
+
+  Vector_3 position(int v) const
+  {
+    if(!m_state.is_free[v])
+      return m_mesh[v];
+    const Vector_3 p = location(v).position;
+    return has_moved(v) || (p - m_mesh[v]).norm() > m_rounding ? p : m_mesh[v];
+  }
+
+  // of the vertices of what is optimized from the reference, before they move
+  double largest_distance() const
+  {
+    double largest = 0;
+    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
+      if(m_state.has_face_that_counts(v))
+        largest = (std::max)(largest, (location(v).position - m_mesh[v]).norm());
+    return largest;
+  }
+
+  // measures the mesh as the caller gets it
+  template <typename ConcurrencyTag, typename Density>
+  Global_measure measure(const Density& density) const
+  {
+    std::vector<Vector_3> positions;
+    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
+      positions.push_back(m_frame.without_rounding(position(v)));
+    const auto exchange = [&]() {
+      for(std::size_t v = 0; v < positions.size(); ++v)
+        std::swap(m_state.vertices[v].position, positions[v]);
+    };
+    exchange();
+    const Global_measure result = internal::measure<ConcurrencyTag>(
+      m_state, density, std::numeric_limits<double>::infinity(), 0);
+    exchange();
+    return result;
+  }
+
+private:
+  bool has_moved(int v) const
+  {
+    return !m_has_returned && m_state.vertices[v].position != m_start[v];
+  }
+
+  const Canonical_frame& m_frame;
+  const std::vector<Vector_3>& m_mesh;
+  const std::vector<Vector_3>& m_reference;
+  Optimization_state& m_state;
+  std::vector<Vector_3> m_start; // positions in the frame
+  double m_rounding;
+  bool m_has_returned = false;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CALLER_VIEW_H
