@@ -120,12 +120,12 @@ namespace CGAL {
  *                       if `use_on_surface_steps` is `false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
- *     \cgalParamDescription{the optimization stops when an outer iteration lowers the energy by
+ *     \cgalParamDescription{the optimization stops when two outer iterations in a row lower the energy by
  *                           less than this part of what it has above the energy of elements that
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without}
  *     \cgalParamType{`double`}
- *     \cgalParamDefault{`3e-3`}
+ *     \cgalParamDefault{`4e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
  *     \cgalParamDescription{the largest number of faces of a patch that is flattened, and about the

@@ -27,7 +27,7 @@ struct Options
   unsigned int number_of_iterations = 30;
   unsigned int random_seed = 0;
   double maximum_running_time = std::numeric_limits<double>::infinity();
-  double energy_tolerance = 3e-3;
+  double energy_tolerance = 4e-3;
   double developability_threshold = 0.25;
   int maximum_patch_size = 0;
   Drift_bound drift_bound;

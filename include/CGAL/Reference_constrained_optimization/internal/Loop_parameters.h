@@ -22,7 +22,7 @@ struct Loop_parameters
   std::size_t number_of_iterations = 30;
   double drift_bound = -1; // a length; negative: see Outer_loop::make_drift_guard
   // decrease per iteration, relative to what the energy has above that of elements at rest
-  double energy_tolerance = 3e-3;
+  double energy_tolerance = 4e-3;
   // Part of the mean edge length at a vertex: where all around move less it is calm. Small ways of many
   // together may lead far, which is why two rings are looked at.
   double movement_tolerance = 0.02;

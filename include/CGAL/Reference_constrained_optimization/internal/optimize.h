@@ -163,10 +163,8 @@ void optimize(const FaceRange& range,
     const double unit = frame.unit();
     const bool is_given = result.drift_bound == framed_parameters.drift_bound;
     result.drift_bound = is_given ? loop_parameters.drift_bound : unit * result.drift_bound;
-    // no less than the true ones: both ends of a distance may have been rounded
-    for(double* drift : {&result.initial_drift, &result.drift})
-      if(*drift > 0)
-        *drift = unit * (*drift + 4 * frame.resolution());
+    result.initial_drift *= unit;
+    result.drift *= unit;
   };
   if(result.number_of_free_vertices > 0)
   {

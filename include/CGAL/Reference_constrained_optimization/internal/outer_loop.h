@@ -193,7 +193,10 @@ private:
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
       before = after;
-      if(moves && (repairs || falls || rises))
+      m_calm = repairs || falls || rises ? 0 : m_calm + 1;
+      const int calm_enough =
+        2; // what one iteration gains is also a matter of where its patches lie
+      if(moves && m_calm < calm_enough)
       {
         if(m_parameters.use_active_set)
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
@@ -406,7 +409,7 @@ private:
   std::vector<char> m_is_active, m_is_untouched; // per face
   Acceptance_test::Limits m_limits;
   std::size_t m_next_to_flatten = 0; // iteration
-  int m_held_up = 0;                 // iterations in a row
+  int m_held_up = 0, m_calm = 0;     // iterations in a row
   double m_cap = 0;
   double m_rest_energy = 0;
   double m_initial_energy = 0;
