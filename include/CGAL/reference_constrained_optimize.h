@@ -36,7 +36,9 @@ namespace CGAL {
  * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
- * and seed give the same bits for any number of threads.
+ * and seed give the same bits for any number of threads, and in other units of length or far away from the
+ * origin the same result but for the rounding of coordinates (far away unless faces are thinner than a
+ * millionth of the reference's diagonal, or vertices are many).
  *
  * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
  * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads

@@ -48,6 +48,8 @@ struct Stage_times
  *
  * Energies are means over the elements of the energy's density, measured on the mesh as its
  * vertices lie on the reference, and always finite: densities continue finitely beyond their cap.
+ * Lengths are in the unit of the points; the drift is that of coordinates that are rounded to a
+ * millionth of the reference's diagonal at most.
  */
 struct Result
 {
@@ -83,7 +85,8 @@ struct Result
   /// the middles of the mesh's edges and faces from the reference, and of the vertices and middles of creases of the reference from
   /// the mesh. 0 if the drift was not bounded; `drift()` measures it always, and more closely.
   double initial_drift = 0;
-  double drift = 0; ///< the same at the end; no less than the true distance of any of these points.
+  /// the same at the end; but for rounding no less than the true distance of any of these points.
+  double drift = 0;
 
   std::size_t conformal_flattenings = 0;     ///< flattenings accepted from the fast path (LSCM).
   std::size_t convex_border_flattenings = 0; ///< from the fall-back (convex border, then descent).

@@ -107,13 +107,15 @@ public:
   }
 
 private:
-  // Of the finest grid, 2^-exponent, that rounding does not take numbers from cell to cell of, up to a
-  // thousand diagonals away from the origin: the largest gap between random numbers in [0, 1) is about
-  // log(n) / n, and of that one half is on both sides of the border of cells.
+  // A cell of 2^-exponent is as small as it may be for rounding not to take coordinates to other cells up
+  // to a thousand diagonals away from the origin, where it is 1e-13: the largest gap between random
+  // numbers in [0, 1) is about log(n) / n, one half of it is on each side of the border, and the second
+  // largest gap must not be taken for the largest.
   static int finest_exponent(double number)
   {
-    const double rounding = 8e-12, largest = 36;
-    return int((std::min)(largest, std::log2(0.5 * std::log(number) / number / rounding)));
+    const double far_above_rounding = 8e-12, largest = 36;
+    return int(
+      (std::min)(largest, std::log2(0.5 * std::log(number) / number / far_above_rounding)));
   }
 
   double in_cells(double coordinate, int axis) const

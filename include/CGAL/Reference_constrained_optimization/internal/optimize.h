@@ -147,8 +147,11 @@ void optimize(const FaceRange& range,
     framed_parameters.drift_bound = frame.length(loop_parameters.drift_bound);
   const auto finish = [&]() {
     Global_measure final = view.measure<ConcurrencyTag>(density);
-    // a gain that rounding to the frame made up is none
-    if(final.defects() == initial.defects() && final.energy > initial.energy)
+    // A gain that rounding to the frame made up is none. Defects may even have risen where the input came
+    // close to having more. The finishing stage may pay for an angle.
+    if(final.defects() > initial.defects() ||
+       (final.defects() == initial.defects() && final.energy > initial.energy &&
+        final.sharpest >= initial.sharpest))
     {
       view.return_to_start();
       final = initial;
