@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -39,8 +40,22 @@ public:
   // to be called when all vertices are placed and none has moved
   void remember_start()
   {
-    for(const Placed_vertex& v : m_state.vertices)
-      m_start.push_back(v.position);
+    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
+    {
+      m_start.push_back(m_state.vertices[v].position);
+      if(slides(v))
+        m_start_on_line[v] = m_state.vertices[v].on_reference;
+    }
+  }
+
+  // whether some vertex went further than the grid is wide
+  bool has_moved() const
+  {
+    const double cells = 16;
+    for(std::size_t v = 0; v < m_start.size(); ++v)
+      if((m_state.vertices[v].position - m_start[v]).norm() > cells * m_frame.resolution())
+        return true;
+    return false;
   }
 
   // from now on no vertex has moved
@@ -49,14 +64,14 @@ public:
   // where a vertex' point of the reference is
   Surface_point location(int v) const
   {
-    Surface_point s = m_state.vertices[v].on_reference;
+    Surface_point s =
+      m_has_returned && slides(v) ? m_start_on_line.at(v) : m_state.vertices[v].on_reference;
     const Indexed_mesh& surface = m_state.reference.mesh();
     const auto point = [&](int w) -> const Vector_3& { return m_reference[w]; };
     s.position.setZero();
     for(int i = 0; i < 3; ++i)
       s.position += s.barycentric(i) * point(surface.corner_vertex[surface.face_begin[s.face] + i]);
-    const bool slides = !m_has_returned && m_state.vertices[v].on_line.segment >= 0;
-    if(has_moved(v) || slides || s.position == m_mesh[v])
+    if(has_moved(v) || slides(v) || s.position == m_mesh[v])
       return s;
     const Foot foot = descend_to(surface, point, m_mesh[v], s.face);
     return {foot.position, foot.face, foot.barycentric};
@@ -99,6 +114,8 @@ public:
   }
 
 private:
+  bool slides(int v) const { return m_state.vertices[v].on_line.segment >= 0; }
+
   bool has_moved(int v) const
   {
     return !m_has_returned && m_state.vertices[v].position != m_start[v];
@@ -109,6 +126,7 @@ private:
   const std::vector<Vector_3>& m_reference;
   Optimization_state& m_state;
   std::vector<Vector_3> m_start; // positions in the frame
+  std::map<int, Surface_point> m_start_on_line;
   double m_rounding;
   bool m_has_returned = false;
 };

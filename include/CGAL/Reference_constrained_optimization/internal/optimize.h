@@ -149,7 +149,7 @@ void optimize(const FaceRange& range,
     Global_measure final = view.measure<ConcurrencyTag>(density);
     // A gain that rounding to the frame made up is none. Defects may even have risen where the input came
     // close to having more. The finishing stage may pay for an angle.
-    if(final.defects() > initial.defects() ||
+    if(!view.has_moved() || final.defects() > initial.defects() ||
        (final.defects() == initial.defects() && final.energy > initial.energy &&
         final.sharpest >= initial.sharpest))
     {
