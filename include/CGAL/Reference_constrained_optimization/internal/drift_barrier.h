@@ -19,7 +19,7 @@ public:
   // `weight` is an energy
   explicit Drift_barrier(double weight = 0) : m_weight(weight) {}
 
-  static constexpr double free_part = 0.6, last_part = 1.2;
+  static constexpr double free_part = 0.6, last_part = 1.1;
 
   static bool is_felt(double distance, double bound) { return distance > free_part * bound; }
 

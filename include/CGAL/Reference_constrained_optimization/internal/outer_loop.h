@@ -194,15 +194,15 @@ private:
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
       before = after;
       m_calm = repairs || falls || rises ? 0 : m_calm + 1;
-      const int calm_enough =
-        2; // what one iteration gains is also a matter of where its patches lie
+      const int calm_enough = 2; // what one gains is also a matter of where its patches lie
       if(moves && m_calm < calm_enough)
       {
         if(m_parameters.use_active_set)
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       }
-      else if(!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
-              !(divides || ((m_held_up > 0 || progress.has_refused) && divide_further())))
+      else if((!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
+               !(divides || ((m_held_up > 0 || progress.has_refused) && divide_further()))) &&
+              !starts_again(after.capped_energy))
       {
         m_result.status = Status::converged;
         return true;
@@ -227,6 +227,25 @@ private:
     if(size < smallest)
       return false;
     m_partition.set_patch_size(size);
+    return true;
+  }
+
+  // Where small patches have come to rest, patches larger than those at first may go on: what spreads
+  // over all of a region is a matter of theirs, once no single place in it holds them up. Everything
+  // is visited again, and again as long as that pays; false if it did not.
+  bool starts_again(double energy)
+  {
+    const bool pays = !m_has_rested || has_fallen(m_resting_energy, energy);
+    if(!m_prizes_angles || !m_parameters.use_on_surface_steps || !pays)
+      return false;
+    const int times = 4;
+    m_has_rested = true;
+    m_resting_energy = energy;
+    m_partition.set_patch_size(
+      (std::min)(times * on_surface_patch_size(m_parameters.selection, m_state.mesh),
+                 largest_patch_size(m_parameters.selection)));
+    m_calm = m_held_up = 0;
+    m_is_active = faces_around<ConcurrencyTag>(m_state.mesh, m_state.is_free, 0);
     return true;
   }
 
@@ -410,6 +429,8 @@ private:
   Acceptance_test::Limits m_limits;
   std::size_t m_next_to_flatten = 0; // iteration
   int m_held_up = 0, m_calm = 0;     // iterations in a row
+  bool m_has_rested = false;
+  double m_resting_energy = 0; // when iterations came to rest the last time
   double m_cap = 0;
   double m_rest_energy = 0;
   double m_initial_energy = 0;
