@@ -478,7 +478,7 @@ void test_barrier(const std::string& name, const Density& density)
                                  Vector_3(shape(0, 1), shape(1, 1), 0)};
     const double angle = smallest_angle(corners[0], corners[1], corners[2]);
     const double target = (std::max)(1., angle + random(-6, 4));
-    const internal::Angle_barrier_density<Density> barrier(density, target);
+    const internal::Angle_barrier_density<Density> barrier(density, target, 6);
     RCO_CHECK_EQUAL(barrier.target(), target);
 
     Eigen::Vector4d gradient, plain_gradient;
@@ -534,7 +534,7 @@ void test_barrier(const std::string& name, const Density& density)
   RCO_CHECK_LESS(100, plain_again);
 
   // turned over, or without extent
-  const internal::Angle_barrier_density<Density> barrier(density, 30);
+  const internal::Angle_barrier_density<Density> barrier(density, 30, 6);
   for(const double s : {-1., -1e-9, 0., 1e-9, 1e9})
     for(const double t : {0., 1e-40, 1.})
     {

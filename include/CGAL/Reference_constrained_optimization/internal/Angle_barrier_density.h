@@ -18,16 +18,17 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A density with a barrier on the angles of the triangle on top, for elements whose rest triangle is
-// equilateral: each angle a adds W exp(k (t - a)), t being the target, in degrees, and W the density
-// at rest. Beyond an exponent of 6 the exponential goes on as its second-order Taylor polynomial, so
+// equilateral: each angle a adds W exp(k (t - a)), t being the target, in degrees, k the steepness and
+// W the density at rest. Beyond an exponent of 6 the exponential goes on as its second-order Taylor polynomial, so
 // that a sharp triangle does not own the sum; angles far above the target add nothing.
 template <typename Density>
 class Angle_barrier_density
 {
 public:
-  Angle_barrier_density(const Density& density, double target)
+  Angle_barrier_density(const Density& density, double target, double steepness)
     : m_density(density),
       m_target(target),
+      m_steepness(steepness),
       m_weight(density.value(Eigen::Matrix2d::Identity()))
   {
     m_equilateral << 1, 0.5, 0, std::sqrt(0.75);
@@ -70,7 +71,6 @@ public:
 
 private:
   static constexpr double degrees_per_radian = 57.295779513082320877;
-  static constexpr double steepness = 6; // per degree
 
   // the three angles of a triangle with the given edge matrix, in degrees; negative if it is inverted
   struct Angles
@@ -131,14 +131,14 @@ private:
 
   Jet barrier(double angle) const
   {
-    const double cap = 6, x = steepness * (m_target - angle);
+    const double cap = 6, x = m_steepness * (m_target - angle);
     const double e = m_weight * std::exp(x < cap ? x : cap);
     const double h = x < cap ? 0 : x - cap;
-    return {e * (1 + h * (1 + 0.5 * h)), -steepness * e * (1 + h), steepness * steepness * e};
+    return {e * (1 + h * (1 + 0.5 * h)), -m_steepness * e * (1 + h), m_steepness * m_steepness * e};
   }
 
   const Density& m_density;
-  double m_target, m_weight, m_negligible_cosine = 1;
+  double m_target, m_steepness, m_weight, m_negligible_cosine = 1;
   Eigen::Matrix2d m_equilateral;
 };
 

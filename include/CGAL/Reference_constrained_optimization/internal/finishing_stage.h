@@ -46,9 +46,10 @@ class Finishing_stage
 public:
   struct Goal
   {
-    double target;   // of the barrier, in degrees
-    double sharpest; // cosine of the angle below which none may fall
-    double searched; // cosine of the angle below which a search takes over where Newton steps end
+    double target;    // of the barrier, in degrees
+    double steepness; // of the barrier, per degree
+    double sharpest;  // cosine of the angle below which none may fall
+    double searched;  // cosine of the angle below which a search takes over where Newton steps end
   };
 
   struct Faces
@@ -97,7 +98,9 @@ public:
       const double lagging = minimum + 0.2 * ahead, enough = minimum + 0.3 * ahead;
       // a little is lent to the neighbours of the sharpest, which would be in the way otherwise
       const double lent = (std::max)(first_minimum, minimum - 0.5 * ahead);
-      const Goal goal{target, cosine(lent), cosine(lagging)};
+      // The closer the target, the steeper: the angles of a star that is at its limit are then evened out.
+      const double steepness = (std::min)(steepest, (std::max)(flattest, 12 / ahead));
+      const Goal goal{target, steepness, cosine(lent), cosine(lagging)};
       goes_on = visit_below(target, goal, false, visit);
       if(goes_on && m_minimum < lagging)
         goes_on = visit_below(lagging, goal, true, visit);
@@ -124,7 +127,7 @@ public:
         {
           const bool widens = widen(enough);
           if(!widens || m_minimum <= minimum)
-            step = (widens ? 0.5 : 0.25) * ahead;
+            step = (widens ? 0.8 : 0.25) * ahead;
         }
       }
     }
@@ -140,6 +143,7 @@ public:
 private:
   static constexpr double degrees_per_radian = 57.295779513082320877;
   static constexpr double smallest_step = 0.03, negligible = 0.01; // degrees
+  static constexpr double flattest = 6, steepest = 30;             // per degree
 
   // Wins back what the mean lost on the way, and more, while the minimum is only held: small patches
   // gain a little everywhere where the large ones before the stage have come to rest.
@@ -158,7 +162,7 @@ private:
       save();
       m_touched.clear();
       want(is_wanted);
-      const Goal goal{minimum, cosine(minimum), cosine(minimum)};
+      const Goal goal{minimum, flattest, cosine(minimum), cosine(minimum)};
       const bool goes_on = visit_wanted(goal, false, visit);
       if(m_minimum < minimum || mean() < mean_before || m_energy > m_largest_energy)
       {

@@ -193,9 +193,7 @@ private:
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
       before = after;
-      m_calm = repairs || falls || rises ? 0 : m_calm + 1;
-      const int calm_enough = 2; // what one gains is also a matter of where its patches lie
-      if(moves && m_calm < calm_enough)
+      if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
@@ -244,7 +242,7 @@ private:
     m_partition.set_patch_size(
       (std::min)(times * on_surface_patch_size(m_parameters.selection, m_state.mesh),
                  largest_patch_size(m_parameters.selection)));
-    m_calm = m_held_up = 0;
+    m_held_up = 0;
     m_is_active = faces_around<ConcurrencyTag>(m_state.mesh, m_state.is_free, 0);
     return true;
   }
@@ -347,8 +345,9 @@ private:
           saved.add(faces.list);
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
-          return visit_regions(faces.is_in, searches ? Moves::by_search : Moves::on_surface,
-                               Angle_barrier_density<Density>(m_density, goal.target));
+          return visit_regions(
+            faces.is_in, searches ? Moves::by_search : Moves::on_surface,
+            Angle_barrier_density<Density>(m_density, goal.target, goal.steepness));
         },
         [&]() { saved.forget(); }, [&]() { saved.restore(); });
     }
@@ -428,7 +427,7 @@ private:
   std::vector<char> m_is_active, m_is_untouched; // per face
   Acceptance_test::Limits m_limits;
   std::size_t m_next_to_flatten = 0; // iteration
-  int m_held_up = 0, m_calm = 0;     // iterations in a row
+  int m_held_up = 0;                 // iterations in a row
   bool m_has_rested = false;
   double m_resting_energy = 0; // when iterations came to rest the last time
   double m_cap = 0;
