@@ -65,6 +65,9 @@ struct Optimization_state
   // per vertex that slides: its two neighbours on its line in the mesh; else -1
   std::vector<std::array<int, 2>> line_neighbours = {};
   std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
+  // A cosine: what comes as close as that to being turned over or folded counts as if it were. Where
+  // coordinates were rounded to a frame this cannot have hidden anything then.
+  double caution = 0;
 
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
@@ -77,10 +80,6 @@ struct Optimization_state
     return false;
   }
 };
-
-// A cosine: what comes as close as that to being turned over or folded counts as if it were. Rounding
-// to the canonical frame cannot hide anything then.
-constexpr double frame_caution = 3e-3;
 
 // Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
 // whether an edge is folded, for vertices given by a function `vertex(v)` that returns a
@@ -102,7 +101,7 @@ bool is_flipped(const Indexed_mesh& mesh,
                 const VertexAccess& vertex,
                 int f,
                 const Vector_3& normal,
-                double caution = frame_caution)
+                double caution)
 {
   Vector_3 sum = Vector_3::Zero();
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -127,8 +126,7 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
   return false;
 }
 
-inline bool
-is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution = frame_caution)
+inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution)
 {
   return normal_a.dot(normal_b) < (caution - 0.5) * normal_a.norm() * normal_b.norm();
 }
@@ -197,10 +195,7 @@ struct Global_measure
 };
 
 template <typename ConcurrencyTag, typename Density>
-Global_measure measure(const Optimization_state& state,
-                       const Density& density,
-                       double cap,
-                       double caution = frame_caution)
+Global_measure measure(const Optimization_state& state, const Density& density, double cap)
 {
   const Indexed_mesh& mesh = state.mesh;
   const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
@@ -215,12 +210,12 @@ Global_measure measure(const Optimization_state& state,
     Global_measure& m = parts[block];
     for(int f = begin; f < end; ++f)
     {
-      m.flips += is_flipped(mesh, vertex, f, normals[f], caution);
+      m.flips += is_flipped(mesh, vertex, f, normals[f], state.caution);
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] > c)
           m.fold_edges +=
-            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], caution);
+            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution);
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);

@@ -34,6 +34,7 @@ struct Patch
   std::vector<std::array<int, 2>> line_neighbours;
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
+  double caution = 0;                         // see Optimization_state
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
 
@@ -98,6 +99,7 @@ public:
     ++m_stamp;
     Patch patch;
     patch.faces = faces;
+    patch.caution = state.caution;
     std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
     begins.reserve(faces.size() + 1);
     for(const int f : faces)

@@ -173,8 +173,8 @@ private:
     for(const int f : m_changed)
     {
       details.normals[f] = face_normal(mesh, vertex, f);
-      details.flipped[f] =
-        char(is_flipped(mesh, vertex, f, details.normals[f]) + is_nonconvex(mesh, vertex, f));
+      details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f], patch.caution) +
+                                is_nonconvex(mesh, vertex, f));
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
       {
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
@@ -187,9 +187,9 @@ private:
         const int o = mesh.opposite[c];
         if(o >= 0)
           details.folded[(std::min)(c, o)] =
-            is_folded(details.normals[f], details.normals[mesh.corner_face[o]]);
+            is_folded(details.normals[f], details.normals[mesh.corner_face[o]], patch.caution);
         else if(patch.outside_face[c] >= 0)
-          details.folded[c] = is_folded(details.normals[f], m_outside_normal[c]);
+          details.folded[c] = is_folded(details.normals[f], m_outside_normal[c], patch.caution);
       }
   }
 

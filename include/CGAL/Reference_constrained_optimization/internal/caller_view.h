@@ -49,7 +49,7 @@ public:
   }
 
   // whether some vertex went further than the grid is wide
-  bool has_moved() const
+  bool has_moved_noticeably() const
   {
     const double cells = 16;
     for(std::size_t v = 0; v < m_start.size(); ++v)
@@ -95,20 +95,22 @@ public:
     return largest;
   }
 
-  // measures the mesh as the caller gets it
+  // measures the mesh as the caller gets it, without caution
   template <typename ConcurrencyTag, typename Density>
   Global_measure measure(const Density& density) const
   {
     std::vector<Vector_3> positions;
     for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
       positions.push_back(m_frame.without_rounding(position(v)));
+    double caution = 0;
     const auto exchange = [&]() {
+      std::swap(m_state.caution, caution);
       for(std::size_t v = 0; v < positions.size(); ++v)
         std::swap(m_state.vertices[v].position, positions[v]);
     };
     exchange();
-    const Global_measure result = internal::measure<ConcurrencyTag>(
-      m_state, density, std::numeric_limits<double>::infinity(), 0);
+    const Global_measure result =
+      internal::measure<ConcurrencyTag>(m_state, density, std::numeric_limits<double>::infinity());
     exchange();
     return result;
   }

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CANONICAL_FRAME_H
 
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,10 @@ public:
       return;
     double height = std::numeric_limits<double>::infinity();
     for(const Mesh_copy* copy : copies)
-      height = (std::min)(height, smallest_height(*copy));
+      for(int c = 0; c < copy->mesh.number_of_corners(); ++c)
+        height = (std::min)(
+          height, height_at_corner(
+                    copy->mesh, [&](int v) -> const Vector_3& { return copy->points[v]; }, c));
     // a cell is at most 2^-10 of the smallest height, a turn of a tenth of a degree
     const int turn = 10, finest = 40;
     const double exponent = std::ceil(turn - std::log2(height / diagonal));
@@ -83,6 +87,8 @@ public:
   double unit() const { return m_unit; }
   // how far coordinates may be from what they were, in units of the frame; 0 if they are the same
   double resolution() const { return m_resolution; }
+  // cosine of a turn that rounding to the grid is far from
+  double caution() const { return m_resolution == 0 ? 0 : 3e-3; }
 
   Vector_3 operator()(const Vector_3& p) const
   {
@@ -121,23 +127,6 @@ private:
   double in_cells(double coordinate, int axis) const
   {
     return (coordinate - m_origin(axis)) / m_unit / m_resolution;
-  }
-
-  // of the triangles at the corners
-  static double smallest_height(const Mesh_copy& copy)
-  {
-    double smallest = std::numeric_limits<double>::infinity();
-    const Indexed_mesh& mesh = copy.mesh;
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-    {
-      const Vector_3& p = copy.points[mesh.source(c)];
-      const Vector_3 u = copy.points[mesh.target(c)] - p,
-                     v = copy.points[mesh.source(mesh.previous(c))] - p;
-      const double longest = (std::max)({u.norm(), v.norm(), (u - v).norm()});
-      const double height = longest > 0 ? u.cross(v).norm() / longest : 0;
-      smallest = (std::min)(smallest, height);
-    }
-    return smallest;
   }
 
   // The middle of the largest interval of the circle [0, 1) that has no number in it; the first of

@@ -14,6 +14,16 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
+// Of the triangle of a corner and its two neighbours, above its longest side; 0 if it has none.
+template <typename PointAccess>
+double height_at_corner(const Indexed_mesh& mesh, const PointAccess& point, int c)
+{
+  const Vector_3& p = point(mesh.source(c));
+  const Vector_3 u = point(mesh.target(c)) - p, v = point(mesh.source(mesh.previous(c))) - p;
+  const double longest = (std::max)({u.norm(), v.norm(), (u - v).norm()});
+  return longest > 0 ? u.cross(v).norm() / longest : 0;
+}
+
 // Whether some face is more than a line, by more than rounding of the coordinates explains.
 // `point(v)` is the position of a vertex.
 template <typename PointAccess>
@@ -22,13 +32,8 @@ bool has_area(const Indexed_mesh& mesh, const PointAccess& point)
   const double rounding =
     4 * std::numeric_limits<double>::epsilon() * largest_coordinate(mesh, point);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
-  {
-    const Vector_3& p = point(mesh.source(c));
-    const Vector_3 u = point(mesh.target(c)) - p, v = point(mesh.source(mesh.previous(c))) - p;
-    const double longest = (std::max)({u.norm(), v.norm(), (u - v).norm()});
-    if(u.cross(v).norm() > rounding * longest)
+    if(height_at_corner(mesh, point, c) > rounding)
       return true;
-  }
   return false;
 }
 

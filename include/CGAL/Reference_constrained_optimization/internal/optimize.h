@@ -116,7 +116,8 @@ void optimize(const FaceRange& range,
   const std::vector<char> is_in_range = mark_faces(mesh, range);
   const Element_set elements(energy, context, is_in_range, frame);
   interruption.check();
-  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}, is_in_range};
+  Optimization_state state{copy.mesh, surface,     elements,       {}, {}, {},
+                           {},        is_in_range, frame.caution()};
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
@@ -143,13 +144,15 @@ void optimize(const FaceRange& range,
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
 
   Loop_parameters framed_parameters = loop_parameters;
+  const double default_drift_bound = 0.25 * mean_edge_length(surface.mesh(), reference_points);
+  framed_parameters.default_drift_bound = frame.length(default_drift_bound);
   if(std::isfinite(loop_parameters.drift_bound))
     framed_parameters.drift_bound = frame.length(loop_parameters.drift_bound);
   const auto finish = [&]() {
     Global_measure final = view.measure<ConcurrencyTag>(density);
     // A gain that rounding to the frame made up is none. Defects may even have risen where the input came
     // close to having more. The finishing stage may pay for an angle.
-    if(!view.has_moved() || final.defects() > initial.defects() ||
+    if(!view.has_moved_noticeably() || final.defects() > initial.defects() ||
        (final.defects() == initial.defects() && final.energy > initial.energy &&
         final.sharpest >= initial.sharpest))
     {
@@ -162,10 +165,13 @@ void optimize(const FaceRange& range,
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
-    // a bound that the caller gave is told as it was given
     const double unit = frame.unit();
-    const bool is_given = result.drift_bound == framed_parameters.drift_bound;
-    result.drift_bound = is_given ? loop_parameters.drift_bound : unit * result.drift_bound;
+    if(result.drift_bound == framed_parameters.drift_bound)
+      result.drift_bound = loop_parameters.drift_bound;
+    else if(result.drift_bound == framed_parameters.default_drift_bound)
+      result.drift_bound = default_drift_bound;
+    else
+      result.drift_bound *= unit;
     result.initial_drift *= unit;
     result.drift *= unit;
   };

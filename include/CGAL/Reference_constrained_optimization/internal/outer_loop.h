@@ -133,13 +133,14 @@ private:
        (bound < 0 && !m_parameters.use_on_surface_steps))
       return guard;
     const Indexed_mesh& mesh = m_state.mesh;
-    const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
+    const double smallest = 1e-6 * m_state.reference.mean_edge_length();
     double triangles = 0;
     for(int f = 0; f < mesh.number_of_faces(); ++f)
       triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
     const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
-    guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
-                                     bound < 0, barrier, &m_interruption);
+    guard.initialize<ConcurrencyTag>(
+      m_state, bound < 0 ? m_parameters.default_drift_bound : (std::max)(bound, smallest),
+      bound < 0, barrier, &m_interruption);
     m_result.drift_bound = guard.bound();
     m_result.initial_drift = guard.initial_drift();
     return guard;
