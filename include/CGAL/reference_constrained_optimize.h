@@ -71,7 +71,7 @@ namespace CGAL {
  *     \cgalParamDescription{the largest number of outer iterations; each visits every face that
  *                           may still gain}
  *     \cgalParamType{`unsigned int`}
- *     \cgalParamDefault{`30`}
+ *     \cgalParamDefault{`100`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{random_seed}
  *     \cgalParamDescription{the seed of the draws that decide where patches start}

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Steps on the surface: patches that are not flattened, parts of steps, ways into faces of the
-// reference, the barrier on angles, and the finishing stage as a whole.
+// reference, the barrier on angles, the finishing stage as a whole, and larger patches after a rest.
 
 #include "test_meshes.h"
 
@@ -599,6 +599,57 @@ void test_finishing(const std::string& name, const Shape& start, const Shape& re
 #endif
 }
 
+// -------------------------------------------------------------------------------- starting again
+
+// the largest patch and the energy of each iteration
+struct Largest_patches : RCO::Default_visitor
+{
+  std::vector<std::size_t> sizes;
+  std::vector<double> energies;
+  bool iterates = false;
+  void on_iteration_begin(std::size_t)
+  {
+    iterates = true;
+    sizes.push_back(0);
+  }
+  void on_iteration_end(std::size_t, double energy)
+  {
+    iterates = false;
+    energies.push_back(energy);
+  }
+  void on_patch_end(const RCO::Patch_report& report)
+  {
+    if(iterates)
+      sizes.back() = (std::max)(sizes.back(), report.number_of_faces);
+  }
+};
+
+// Where iterations have come to rest, all of a mesh that began in several patches is visited in a single
+// one; but not if the caller bounds their size.
+void test_starting_again()
+{
+  const Scope scope("starting again");
+  const Shape ring = torus(80, 40), start = scrambled(ring, 0.3, 13, onto_torus(1, 0.4));
+  const Mesh reference = make_mesh<Mesh>(ring);
+  for(const unsigned int maximum : {0u, 2000u})
+  {
+    Largest_patches visitor;
+    Mesh mesh = make_mesh<Mesh>(start);
+    const RCO::Result r = CGAL::reference_constrained_optimize(
+      mesh, reference, RCO::Minimum_angle_energy(),
+      params::maximum_patch_size(maximum).use_finishing_stage(false).visitor(std::ref(visitor)));
+    RCO_CHECK(r.status == RCO::Status::converged);
+    RCO_CHECK_LESS(visitor.sizes.front(), ring.faces.size());
+    const std::size_t largest = *std::max_element(visitor.sizes.begin(), visitor.sizes.end());
+    if(maximum == 0)
+      RCO_CHECK_EQUAL(largest, ring.faces.size());
+    else
+      RCO_CHECK_LESS_EQUAL(largest, std::size_t(maximum));
+    for(std::size_t i = 1; i < visitor.energies.size(); ++i)
+      RCO_CHECK_LESS_EQUAL(visitor.energies[i], visitor.energies[i - 1] * (1 + 1e-12));
+  }
+}
+
 int main()
 {
   test_partition();
@@ -615,6 +666,7 @@ int main()
   test_barrier("exponential MIPS", RCO::Exponential_MIPS_density(1));
   test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density());
 
+  test_starting_again();
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);
   test_finishing("torus", scrambled(ring, 0.3, 10, onto_torus(1, 0.4)), ring, 0.5);
   test_finishing("sphere", scrambled(ball, 0.3, 11, onto_sphere), ball, 0);

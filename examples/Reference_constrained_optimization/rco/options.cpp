@@ -99,7 +99,7 @@ po::typed_value<std::string>* text(std::string& variable, const char* what)
 // Whole numbers are read as such only after a look at their range: a conversion would wrap around.
 struct Whole_numbers
 {
-  double number_of_iterations = 30, random_seed = 0, maximum_patch_size = 0, threads = 0;
+  double number_of_iterations = 100, random_seed = 0, maximum_patch_size = 0, threads = 0;
 };
 
 [[noreturn]] void refuse(const std::string& message) { throw Failure(Outcome::bad_usage, message); }
@@ -187,7 +187,7 @@ class Option_reader
         "how far mesh and reference may be apart: a length in the units of the files, a number of "
         "mean edges of the reference if an e follows (0.5e), or inf; default: 0.25e, or what the "
         "input has");
-    add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 30");
+    add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 100");
     add("maximum-running-time", number(o.maximum_running_time), "seconds; default: no limit");
     add("energy-tolerance", number(o.energy_tolerance),
         "an end once two iterations in a row gain less than this part; default: 0.004");

@@ -24,7 +24,7 @@ struct Options
   std::string reference; // empty: the input's own shape
   std::string landmarks, initial, output;
 
-  unsigned int number_of_iterations = 30;
+  unsigned int number_of_iterations = 100;
   unsigned int random_seed = 0;
   double maximum_running_time = std::numeric_limits<double>::infinity();
   double energy_tolerance = 4e-3;
