@@ -92,7 +92,7 @@ void test_chains()
   const internal::Loop_parameters standard =
     internal::read_loop_parameters(internal::cgal_parameters(params::default_values()));
   const internal::Loop_parameters untouched;
-  RCO_CHECK_EQUAL(standard.number_of_iterations, std::size_t(30));
+  RCO_CHECK_EQUAL(standard.number_of_iterations, std::size_t(100));
   RCO_CHECK_EQUAL(standard.random_seed, 0u);
   RCO_CHECK_EQUAL(standard.selection.developability_threshold, 0.25);
   RCO_CHECK_EQUAL(standard.selection.maximum_patch_size, untouched.selection.maximum_patch_size);
