@@ -155,7 +155,7 @@ inline Broken_promises broken_promises(const Mesh& input,
   Defects_in_and_out defects;
   const bool has_triangles = CGAL::is_triangle_mesh(input);
   // distances of quads are looked for anew at the end, and in a soup of sheets found too large
-  const double allowed = (std::max)(1.2 * r.drift_bound, r.initial_drift);
+  const double allowed = (std::max)(1.1 * r.drift_bound, r.initial_drift);
   broken.add_if(has_triangles && r.drift > allowed * (1 + 1e-9),
                 "drift of " + in_short(r.drift) + " where no more than " + in_short(allowed) +
                   " is promised");
