@@ -111,6 +111,30 @@ void test_drift()
   RCO_CHECK_EQUAL(tolerance(with), tolerance(spike));
 }
 
+// Points of a face are on it where a needle crosses it, of which only the sides are known to all digits
+// (found by fuzzing).
+void test_distance_beside_needle()
+{
+  const Scope scope("distance beside a needle");
+  const double h = std::sqrt(0.5), z = -1e-9 * h;
+  Shape surface;
+  surface.points = {Vector_3(0, -h, z), Vector_3(-h, 0, z),    Vector_3(h, h, 0),
+                    Vector_3(0, -1, 0), Vector_3(0, 0, -1e-9), Vector_3(0, -h, z)};
+  surface.faces = {{0, 1, 2}, {5, 3, 4}};
+  Shape points;
+  for(int i = 0; i < 30; ++i)
+  {
+    const double part = 0.001 * i;
+    points.points.push_back((1 - 2 * part) * surface.points[0] +
+                            part * (surface.points[1] + surface.points[2]));
+  }
+  for(int v = 0; v < 30; v += 3)
+    points.faces.push_back({v, v + 1, v + 2});
+  const RCO::Distance_to_reference distance =
+    RCO::distance_to_reference(make_mesh<Mesh>(points), make_mesh<Mesh>(surface));
+  RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
+}
+
 void test_orientation()
 {
   const Shape flat = plane_grid(6, 6);
@@ -206,6 +230,7 @@ int main()
   test_angles();
   test_distortion();
   test_drift();
+  test_distance_beside_needle();
   test_orientation();
   test_quads();
   test_estimate_and_intersections();

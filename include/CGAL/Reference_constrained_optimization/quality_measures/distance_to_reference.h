@@ -13,6 +13,7 @@
 #include <boost/graph/graph_traits.hpp>
 #include <boost/property_map/property_map.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
@@ -90,6 +91,9 @@ distance_to_reference(const FaceGraph& mesh,
   const internal::Reference_surface surface(
     internal::read_measured_mesh(reference, np_reference, "reference"));
   Distance_to_reference result;
+  const double largest = internal::largest_coordinate(
+    copy.mesh, [&](int v) -> const internal::Vector_3& { return copy.points[v]; });
+  result.tolerance = 1e-12 * surface.diagonal() + 4 * unit * largest;
   int i = -1;
   for(const auto v : vertices(mesh))
   {
@@ -97,16 +101,18 @@ distance_to_reference(const FaceGraph& mesh,
     if(copy.mesh.is_isolated(i) || !filter(v))
       continue;
     ++result.number_of_vertices;
-    const double distance = (surface.closest(copy.points[i]).position - copy.points[i]).norm();
+    const internal::Vector_3& p = copy.points[i];
+    double distance = (surface.closest(p).position - p).norm();
+    // of a needle only the sides are found to all digits: another face may be closer
+    if(distance > result.tolerance && distance < 1e-8 * surface.diagonal())
+      for(const internal::Surface_point& s : surface.all_within(p, distance))
+        distance = (std::min)(distance, (s.position - p).norm());
     if(distance > result.maximum)
     {
       result.maximum = distance;
       result.vertex = std::size_t(i);
     }
   }
-  const double largest = internal::largest_coordinate(
-    copy.mesh, [&](int v) -> const internal::Vector_3& { return copy.points[v]; });
-  result.tolerance = 1e-12 * surface.diagonal() + 4 * unit * largest;
   return result;
 }
 
