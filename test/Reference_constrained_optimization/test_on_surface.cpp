@@ -631,7 +631,7 @@ void test_starting_again()
   const Scope scope("starting again");
   const Shape ring = torus(80, 40), start = scrambled(ring, 0.3, 13, onto_torus(1, 0.4));
   const Mesh reference = make_mesh<Mesh>(ring);
-  for(const unsigned int maximum : {0u, 2000u})
+  for(const unsigned int maximum : {0u, 2000u, 2000000000u})
   {
     Largest_patches visitor;
     Mesh mesh = make_mesh<Mesh>(start);
@@ -639,7 +639,8 @@ void test_starting_again()
       mesh, reference, RCO::Minimum_angle_energy(),
       params::maximum_patch_size(maximum).use_finishing_stage(false).visitor(std::ref(visitor)));
     RCO_CHECK(r.status == RCO::Status::converged);
-    RCO_CHECK_LESS(visitor.sizes.front(), ring.faces.size());
+    if(maximum <= 2000)
+      RCO_CHECK_LESS(visitor.sizes.front(), ring.faces.size());
     const std::size_t largest = *std::max_element(visitor.sizes.begin(), visitor.sizes.end());
     if(maximum == 0)
       RCO_CHECK_EQUAL(largest, ring.faces.size());

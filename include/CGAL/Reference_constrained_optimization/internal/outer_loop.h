@@ -240,9 +240,9 @@ private:
     const int times = 4;
     m_has_rested = true;
     m_resting_energy = energy;
-    m_partition.set_patch_size(
-      (std::min)(times * on_surface_patch_size(m_parameters.selection, m_state.mesh),
-                 largest_patch_size(m_parameters.selection)));
+    const int size = on_surface_patch_size(m_parameters.selection, m_state.mesh),
+              largest = largest_patch_size(m_parameters.selection);
+    m_partition.set_patch_size(size < largest / times ? times * size : largest);
     m_held_up = 0;
     m_is_active = faces_around<ConcurrencyTag>(m_state.mesh, m_state.is_free, 0);
     return true;
