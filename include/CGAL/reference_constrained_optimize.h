@@ -122,10 +122,12 @@ namespace CGAL {
  *                       if `use_on_surface_steps` is `false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
- *     \cgalParamDescription{the optimization stops when two outer iterations in a row lower the energy by
+ *     \cgalParamDescription{the optimization comes to rest when an outer iteration lowers the energy by
  *                           less than this part of what it has above the energy of elements that
  *                           all have the shape they have at rest, scaled to the area of the mesh,
- *                           both with single elements capped and without}
+ *                           both with single elements capped and without; it ends there, or, for
+ *                           energies that prize angles, once starting again with larger patches has
+ *                           gained less, too}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`4e-3`}
  *   \cgalParamNEnd

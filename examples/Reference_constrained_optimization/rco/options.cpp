@@ -190,7 +190,7 @@ class Option_reader
     add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 100");
     add("maximum-running-time", number(o.maximum_running_time), "seconds; default: no limit");
     add("energy-tolerance", number(o.energy_tolerance),
-        "an end once two iterations in a row gain less than this part; default: 0.004");
+        "a rest once an iteration gains less than this part; default: 0.004");
     add("random-seed", count(m_whole.random_seed), "default: 0");
     add("sharp-edges", number(o.sharp_edges),
         "edges where the surface turns by more than X degrees are constrained: their vertices do "

@@ -19,8 +19,8 @@ namespace internal {
 
 // A density with a barrier on the angles of the triangle on top, for elements whose rest triangle is
 // equilateral: each angle a adds W exp(k (t - a)), t being the target, in degrees, k the steepness and
-// W the density at rest. Beyond an exponent of 6 the exponential goes on as its second-order Taylor polynomial, so
-// that a sharp triangle does not own the sum; angles far above the target add nothing.
+// W the density at rest. Beyond an exponent of 6 the exponential goes on as its second-order Taylor
+// polynomial, so that a sharp triangle does not own the sum; angles far above the target add nothing.
 template <typename Density>
 class Angle_barrier_density
 {
