@@ -153,6 +153,13 @@ void test_orientation()
     std::reverse(f.begin(), f.end());
   RCO_CHECK_EQUAL(RCO::orientation_defects(reference, make_mesh<Mesh>(back)).total(), 0u);
 
+  // A mesh of which a part was to be optimized is measured as a whole, however far away the rest is.
+  Shape far = turned;
+  for(Vector_3& p : far.points)
+    p.z() += 10;
+  RCO_CHECK_EQUAL(RCO::orientation_defects(make_mesh<Mesh>(far), reference).number_of_flips,
+                  bad.number_of_flips);
+
   // Where a surface passes through itself, the normals of the other part say nothing: here two
   // planes that are nearly turned against each other, and a mesh with vertices on the line where they
   // meet that the reference does not have.

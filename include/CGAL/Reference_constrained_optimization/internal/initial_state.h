@@ -131,7 +131,6 @@ void place_on_reference(const std::vector<Vector_3>& points,
                         const Canonical_frame& frame = Canonical_frame())
 {
   const Indexed_mesh& mesh = state.mesh;
-  const double limit = 0.1 * reference.diagonal();
   // a vertex this close is on R already, and keeps its bits
   const double largest =
     largest_coordinate(mesh, [&](int v) -> const Vector_3& { return points[v]; });
@@ -168,16 +167,10 @@ void place_on_reference(const std::vector<Vector_3>& points,
     placed.position = points[v];
     if(mesh.is_isolated(v))
       continue;
-    const double distance = (placed.on_reference.position - points[v]).norm();
-    if(distance > limit && state.has_face_that_counts(v))
-      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " +
-                          text_of(distance * frame.unit()) +
-                          " away from the reference, but at most " + text_of(limit * frame.unit()) +
-                          ", a tenth of the reference's diagonal, is allowed");
     if(state.is_free[v])
     {
       ++result.number_of_free_vertices;
-      if(distance > rounding)
+      if((placed.on_reference.position - points[v]).norm() > rounding)
         placed.position = placed.on_reference.position;
     }
   }
@@ -221,6 +214,25 @@ void place_on_reference(const std::vector<Vector_3>& points,
   }
   reference.reverse(is_reversed);
   orient();
+}
+
+// Refuses a mesh that is not close to R, but for what is not to be optimized of it.
+inline void check_distances(const std::vector<Vector_3>& points,
+                            const Optimization_state& state,
+                            const Canonical_frame& frame)
+{
+  const double limit = 0.1 * state.reference.diagonal();
+  for(std::size_t v = 0; v < points.size(); ++v)
+  {
+    if(!state.has_face_that_counts(int(v)))
+      continue;
+    const double distance = (state.vertices[v].on_reference.position - points[v]).norm();
+    if(distance > limit)
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " +
+                          text_of(distance * frame.unit()) +
+                          " away from the reference, but at most " + text_of(limit * frame.unit()) +
+                          ", a tenth of the reference's diagonal, is allowed");
+  }
 }
 
 } // namespace internal

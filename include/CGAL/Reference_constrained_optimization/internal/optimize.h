@@ -122,6 +122,7 @@ void optimize(const FaceRange& range,
   constrain_outside(copy.mesh, is_in_range, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
+  check_distances(copy.points, state, frame);
   // nothing of R would be closest to such a mesh
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");

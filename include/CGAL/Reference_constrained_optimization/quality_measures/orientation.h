@@ -46,9 +46,6 @@ struct Orientation_defects
  * \param reference the reference
  * \param np the parameter `vertex_point_map` of `mesh`
  * \param np_reference the parameter `vertex_point_map` of `reference`
- *
- * \throws Invalid_input if a vertex is further from the reference than a tenth of the diagonal of
- *         the reference's bounding box.
  */
 template <typename FaceGraph,
           typename ReferenceMesh,
@@ -85,7 +82,7 @@ orientation_defects(const FaceGraph& mesh,
  * least, the triangle of the corner and its two neighbours in the face is turned against the sum of
  * the reference's normals at these three vertices.
  *
- * Parameters and exceptions are those of `orientation_defects()`. Triangles are skipped.
+ * Parameters are those of `orientation_defects()`. Triangles are skipped.
  */
 template <typename FaceGraph,
           typename ReferenceMesh,
