@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -38,34 +37,26 @@ public:
   {}
 
   // to be called when all vertices are placed and none has moved
-  void remember_start()
-  {
-    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
-    {
-      m_start.push_back(m_state.vertices[v].position);
-      if(slides(v))
-        m_start_on_line[v] = m_state.vertices[v].on_reference;
-    }
-  }
+  void remember_start() { m_start = m_state.vertices; }
 
   // whether some vertex went further than the grid is wide
   bool has_moved_noticeably() const
   {
     const double cells = 16;
     for(std::size_t v = 0; v < m_start.size(); ++v)
-      if((m_state.vertices[v].position - m_start[v]).norm() > cells * m_frame.resolution())
+      if((m_state.vertices[v].position - m_start[v].position).norm() > cells * m_frame.resolution())
         return true;
     return false;
   }
 
-  // from now on no vertex has moved
-  void return_to_start() { m_has_returned = true; }
+  // Takes the state back, with the points of the reference that vertices had: from where they have
+  // got to since, others might be found.
+  void return_to_start() { m_state.vertices = m_start; }
 
   // where a vertex' point of the reference is
   Surface_point location(int v) const
   {
-    Surface_point s =
-      m_has_returned && slides(v) ? m_start_on_line.at(v) : m_state.vertices[v].on_reference;
+    Surface_point s = m_state.vertices[v].on_reference;
     const Indexed_mesh& surface = m_state.reference.mesh();
     const auto point = [&](int w) -> const Vector_3& { return m_reference[w]; };
     s.position.setZero();
@@ -118,19 +109,14 @@ public:
 private:
   bool slides(int v) const { return m_state.vertices[v].on_line.segment >= 0; }
 
-  bool has_moved(int v) const
-  {
-    return !m_has_returned && m_state.vertices[v].position != m_start[v];
-  }
+  bool has_moved(int v) const { return m_state.vertices[v].position != m_start[v].position; }
 
   const Canonical_frame& m_frame;
   const std::vector<Vector_3>& m_mesh;
   const std::vector<Vector_3>& m_reference;
   Optimization_state& m_state;
-  std::vector<Vector_3> m_start; // positions in the frame
-  std::map<int, Surface_point> m_start_on_line;
+  std::vector<Placed_vertex> m_start;
   double m_rounding;
-  bool m_has_returned = false;
 };
 
 } // namespace internal

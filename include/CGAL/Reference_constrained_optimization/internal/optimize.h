@@ -159,6 +159,7 @@ void optimize(const FaceRange& range,
     {
       view.return_to_start();
       final = initial;
+      result.drift = result.initial_drift;
     }
     write_points(mesh, vpm, mesh_points, view);
     write_locations(mesh, reference, np, state, view);
