@@ -37,7 +37,7 @@ something wrong: as they are, times 2^-20, 2^20, 1e-6 and 1e6, translated by 1e3
 random seed, and with random noise of up to 0.3 mean edges against the mesh without it. Each run has a process of its own. How it ended is
 compared with what is expected, and what the package promises is verified. Times a power of two all
 digits of the smallest angles must be the same. In other units and far away they must not change by 0.1
-degrees, unless a face is thinner than a millionth of the diagonal; how far they change is told, beside
+degrees, unless a face is thinner than a billionth of the diagonal; how far they change is told, beside
 what another random seed does. Markdown tables and a list of all that is not as expected go to the
 standard output.
 
@@ -149,7 +149,7 @@ struct Job
 struct Job_figures : Run_figures
 {
   bool is_expected = false;
-  bool is_thin = false; // a face of mesh or reference is thinner than a millionth of the diagonal
+  bool is_thin = false; // a face of mesh or reference is thinner than a billionth of the diagonal
 };
 
 struct Finished_job
@@ -240,7 +240,7 @@ int run(const Job& job, const Robustness_options& o, Job_figures& figures, std::
     expected = is_optimized(); // borders may have something to do
   const double size = diagonal(reference);
   figures.is_thin = !((std::min)(smallest_relative_height(mesh, size),
-                                 smallest_relative_height(reference, size)) > 1e-6);
+                                 smallest_relative_height(reference, size)) > 1e-9);
   apply(job.variant, size, mesh, !has_reference, 1);
   apply(job.variant, size, reference, true, 1);
   Run_settings settings = o.settings;
@@ -524,7 +524,7 @@ int run_all(const Robustness_options& o)
 
   outcomes.print(std::cout);
   angles.print(std::cout);
-  std::cout << "\nFaces thinner than a millionth of the diagonal, for which angles may hang on "
+  std::cout << "\nFaces thinner than a billionth of the diagonal, for which angles may hang on "
                "rounding, in "
             << thin << " runs in other units or places.\n";
   std::cout << "\nThe mean of the smallest angles fell by more than a degree, for the sake of the "

@@ -468,6 +468,44 @@ void test_frame()
                    q = frame(regular.points[v]) - frame(regular.points[0]);
     RCO_CHECK_LESS_EQUAL((p - q).cwiseAbs().maxCoeff(), frame.resolution() * (1 + 1e-6));
   }
+  // thin faces have grids of their own: they hardly turn, and all are the same in other places
+  Shape sharp = scrambled(torus(120, 60), 0.3, 4, onto_torus(1, 0.4));
+  std::vector<std::size_t> thin_faces;
+  for(std::size_t f = 0; f < sharp.faces.size(); f += 701)
+  {
+    const auto& face = sharp.faces[f];
+    const Vector_3 middle = 0.5 * (sharp.points[face[0]] + sharp.points[face[1]]);
+    sharp.points[face[2]] = middle + 1e-6 * (sharp.points[face[2]] - middle);
+    thin_faces.push_back(f);
+  }
+  const Mesh_copy original = copy_of(sharp);
+  const Canonical_frame graded(original, original);
+  Mesh_copy rounded = original;
+  for(Vector_3& p : rounded.points)
+    p = graded(p);
+  const auto normal_in = [&](const Mesh_copy& copy, std::size_t f) -> Vector_3 {
+    const auto& t = sharp.faces[f];
+    const Vector_3& p = copy.points[t[0]];
+    return (copy.points[t[1]] - p).cross(copy.points[t[2]] - p).normalized();
+  };
+  for(const std::size_t f : thin_faces)
+  {
+    RCO_CHECK_LESS((normal_in(original, f) - normal_in(rounded, f)).norm(), 3e-3);
+    const Vector_3& p = original.points[sharp.faces[f][2]];
+    RCO_CHECK_LESS(graded.resolution_at(p), 0.1 * graded.resolution());
+  }
+  for(const Place& place : {Place{1, {2e3, -2e3, 1e3}}, Place{1, {-1e3, 0, 3e3}},
+                            Place{1e6, {0, 0, 0}}, Place{0.0254, {10, 20, -30}}})
+  {
+    Mesh_copy moved = original;
+    for(Vector_3& p : moved.points)
+      p = place(p);
+    const Canonical_frame there(moved, moved);
+    std::size_t number_of_others = 0;
+    for(std::size_t v = 0; v < moved.points.size(); ++v)
+      number_of_others += !same_bits(there(moved.points[v]), rounded.points[v]);
+    RCO_CHECK_EQUAL(number_of_others, 0u);
+  }
   // a face without area might get one, and a wrong one
   Shape thin = torus(40, 20);
   thin.points[1] = 0.5 * (thin.points[0] + thin.points[2]);

@@ -39,12 +39,13 @@ public:
   // to be called when all vertices are placed and none has moved
   void remember_start() { m_start = m_state.vertices; }
 
-  // whether some vertex went further than the grid is wide
+  // whether some vertex went further than its grid is wide
   bool has_moved_noticeably() const
   {
     const double cells = 16;
     for(std::size_t v = 0; v < m_start.size(); ++v)
-      if((m_state.vertices[v].position - m_start[v].position).norm() > cells * m_frame.resolution())
+      if((m_state.vertices[v].position - m_start[v].position).norm() >
+         cells * m_frame.resolution_at(m_mesh[v]))
         return true;
     return false;
   }
