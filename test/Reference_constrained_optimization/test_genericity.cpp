@@ -494,6 +494,16 @@ void test_frame()
     const Vector_3& p = original.points[sharp.faces[f][2]];
     RCO_CHECK_LESS(graded.resolution_at(p), 0.1 * graded.resolution());
   }
+  // points of all grids go the same way
+  Vector_3 low = Vector_3::Constant(1e300), high = -low;
+  for(std::size_t v = 0; v < rounded.points.size(); ++v)
+  {
+    const Vector_3 way =
+      (rounded.points[v] - (original.points[v] - original.points[0]) / graded.unit());
+    low = low.cwiseMin(way);
+    high = high.cwiseMax(way);
+  }
+  RCO_CHECK_LESS_EQUAL((high - low).maxCoeff(), 1.001 * graded.resolution());
   for(const Place& place : {Place{1, {2e3, -2e3, 1e3}}, Place{1, {-1e3, 0, 3e3}},
                             Place{1e6, {0, 0, 0}}, Place{0.0254, {10, 20, -30}}})
   {
@@ -506,6 +516,11 @@ void test_frame()
       number_of_others += !same_bits(there(moved.points[v]), rounded.points[v]);
     RCO_CHECK_EQUAL(number_of_others, 0u);
   }
+  // lengths that overflow say nothing about thin faces (found by fuzzing)
+  Shape huge = torus(12, 8);
+  huge.points[3] = Vector_3(-2e305, 1, 0);
+  const Mesh_copy tame = copy_of(torus(12, 8));
+  RCO_CHECK(Canonical_frame(tame, copy_of(huge)).resolution() > 0);
   // a face without area might get one, and a wrong one
   Shape thin = torus(40, 20);
   thin.points[1] = 0.5 * (thin.points[0] + thin.points[2]);

@@ -88,7 +88,8 @@ public:
     const std::size_t l = level(p);
     Vector_3 q;
     for(int axis = 0; axis < 3; ++axis)
-      q(axis) = std::floor(in_cells(p(axis), axis, l) - m_shifts[l](axis)) * cell(l);
+      q(axis) =
+        std::floor(in_cells(p(axis), axis, l) - m_shifts[l](axis)) * cell(l) + m_offsets[l](axis);
     return q;
   }
 
@@ -139,7 +140,8 @@ private:
       double height = std::numeric_limits<double>::infinity();
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         height = (std::min)(height, height_at_corner(mesh, point, c));
-      const double exponent = std::ceil(turn - std::log2(height / diagonal));
+      const double exponent =
+        (std::max)(double(m_exponent), std::ceil(turn - std::log2(height / diagonal)));
       if(!(exponent <= finest))
         return false;
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -201,6 +203,14 @@ private:
         if(!parts[l].empty())
           m_shifts[l](axis) = middle_of_gap(parts[l]);
     }
+    // Points of all grids are to go the same way on average: then those of two grids go no further against
+    // one another than those of one. Shifts differ by rounding, so eighths of cells have to do.
+    const auto mean_way = [&](std::size_t l) -> Vector_3 {
+      return m_shifts[l].unaryExpr(
+        [&](double shift) { return (0.125 * std::nearbyint(8 * shift) + 0.5) * cell(l); });
+    };
+    for(std::size_t l = 0; l < m_shifts.size(); ++l)
+      m_offsets.push_back(mean_way(l) - mean_way(0));
   }
 
   // The middle of the largest interval of the circle [0, 1) that has no number in it; the first of
@@ -226,6 +236,7 @@ private:
   Vector_3 m_origin = Vector_3::Zero();
   std::vector<Fine_point> m_fine_points; // sorted
   std::vector<Vector_3> m_shifts;        // per level, in its cells
+  std::vector<Vector_3> m_offsets;       // per level
 };
 
 } // namespace internal
