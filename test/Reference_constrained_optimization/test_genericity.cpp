@@ -494,7 +494,7 @@ void test_frame()
     const Vector_3& p = original.points[sharp.faces[f][2]];
     RCO_CHECK_LESS(graded.resolution_at(p), 0.1 * graded.resolution());
   }
-  // points of all grids go the same way
+  // points go the same way, those of different grids as nearly as a cell
   Vector_3 low = Vector_3::Constant(1e300), high = -low;
   for(std::size_t v = 0; v < rounded.points.size(); ++v)
   {
@@ -503,7 +503,7 @@ void test_frame()
     low = low.cwiseMin(way);
     high = high.cwiseMax(way);
   }
-  RCO_CHECK_LESS_EQUAL((high - low).maxCoeff(), 1.001 * graded.resolution());
+  RCO_CHECK_LESS_EQUAL((high - low).maxCoeff(), 2.001 * graded.resolution());
   for(const Place& place : {Place{1, {2e3, -2e3, 1e3}}, Place{1, {-1e3, 0, 3e3}},
                             Place{1e6, {0, 0, 0}}, Place{0.0254, {10, 20, -30}}})
   {

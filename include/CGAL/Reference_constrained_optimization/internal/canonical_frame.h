@@ -88,8 +88,7 @@ public:
     const std::size_t l = level(p);
     Vector_3 q;
     for(int axis = 0; axis < 3; ++axis)
-      q(axis) =
-        std::floor(in_cells(p(axis), axis, l) - m_shifts[l](axis)) * cell(l) + m_offsets[l](axis);
+      q(axis) = std::floor(in_cells(p(axis), axis, l) - m_shifts[l](axis)) * cell(l);
     return q;
   }
 
@@ -127,7 +126,8 @@ private:
       (std::min)(largest, std::log2(0.5 * std::log(number) / number / far_above_rounding)));
   }
 
-  // A cell is at most 2^-10 of the smallest height of a point's faces, a turn of a tenth of a degree.
+  // A cell is at most 2^-10 of the smallest height of a point's faces: a turn of a tenth of a degree, or
+  // two where grids meet, since points of two grids move by up to two cells against one another.
   // False if some face is too thin.
   bool add_fine_points(const Mesh_copy& copy, double diagonal)
   {
@@ -203,14 +203,6 @@ private:
         if(!parts[l].empty())
           m_shifts[l](axis) = middle_of_gap(parts[l]);
     }
-    // Points of all grids are to go the same way on average: then those of two grids go no further against
-    // one another than those of one. Shifts differ by rounding, so eighths of cells have to do.
-    const auto mean_way = [&](std::size_t l) -> Vector_3 {
-      return m_shifts[l].unaryExpr(
-        [&](double shift) { return (0.125 * std::nearbyint(8 * shift) + 0.5) * cell(l); });
-    };
-    for(std::size_t l = 0; l < m_shifts.size(); ++l)
-      m_offsets.push_back(mean_way(l) - mean_way(0));
   }
 
   // The middle of the largest interval of the circle [0, 1) that has no number in it; the first of
@@ -236,7 +228,6 @@ private:
   Vector_3 m_origin = Vector_3::Zero();
   std::vector<Fine_point> m_fine_points; // sorted
   std::vector<Vector_3> m_shifts;        // per level, in its cells
-  std::vector<Vector_3> m_offsets;       // per level
 };
 
 } // namespace internal
