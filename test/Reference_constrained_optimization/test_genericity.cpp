@@ -494,7 +494,7 @@ void test_frame()
     const Vector_3& p = original.points[sharp.faces[f][2]];
     RCO_CHECK_LESS(graded.resolution_at(p), 0.1 * graded.resolution());
   }
-  // points go the same way, those of different grids as nearly as a cell
+  // points go the same way up to a cell, two where grids meet
   Vector_3 low = Vector_3::Constant(1e300), high = -low;
   for(std::size_t v = 0; v < rounded.points.size(); ++v)
   {

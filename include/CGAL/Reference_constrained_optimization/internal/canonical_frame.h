@@ -6,7 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_CANONICAL_FRAME_H
 
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
+#include <CGAL/Reference_constrained_optimization/internal/cell_sizes.h>
 
 #include <algorithm>
 #include <array>
@@ -33,9 +33,9 @@ inline double without_noise(double x)
 // length is: the optimization would go another way after the least difference in rounding.
 //
 // The unit is the reference's diagonal. Coordinates are rounded to a grid that is laid such that none of
-// them is near the border between two cells: rounding of the input does not take one across. Points of
-// thin faces have finer grids, by themselves, so that no face turns noticeably; where a face is too thin
-// for any, all stays as it is.
+// them is near the border between two cells: rounding of the input does not take one across. Points
+// whose cells are finer (`cell_sizes.h`) have grids of their own; where a face is too thin for any, all
+// stays as it is.
 class Canonical_frame
 {
 public:
@@ -50,24 +50,12 @@ public:
     const double diagonal = bounding_box_diagonal(reference.mesh, reference.points);
     if(!is_safe_diagonal(diagonal))
       return;
-    double number = 2;
-    for(const Mesh_copy* copy : copies)
-      number = (std::max)(number, double(copy->mesh.number_of_vertices()));
-    m_exponent = coarsest_exponent(number);
-    for(const Mesh_copy* copy : copies)
-      if(!add_fine_points(*copy, diagonal))
-      {
-        m_fine_points.clear();
-        return;
-      }
-    // of equal points of both meshes the finer one counts
-    std::sort(m_fine_points.begin(), m_fine_points.end(), is_before);
-    m_fine_points.erase(
-      std::unique(m_fine_points.begin(), m_fine_points.end(),
-                  [](const Fine_point& p, const Fine_point& q) { return p.first == q.first; }),
-      m_fine_points.end());
+    Cell_sizes cells(copies, diagonal);
+    if(cells.is_too_thin())
+      return;
+    m_cells = std::move(cells);
     m_unit = diagonal;
-    m_resolution = std::ldexp(1., -m_exponent);
+    m_resolution = m_cells.width(0);
     lay_grids(copies);
   }
 
@@ -76,7 +64,10 @@ public:
   // how far coordinates may be from what they were, in units of the frame; 0 if they are the same
   double resolution() const { return m_resolution; }
   // the same for a vertex of one of the meshes, in the caller's coordinates
-  double resolution_at(const Vector_3& p) const { return cell(level(p)); }
+  double resolution_at(const Vector_3& p) const
+  {
+    return m_resolution == 0 ? 0 : m_cells.width(m_cells.level(p));
+  }
   // cosine of a turn that rounding to the grid is far from
   double caution() const { return m_resolution == 0 ? 0 : 3e-3; }
 
@@ -85,11 +76,9 @@ public:
   {
     if(m_resolution == 0)
       return p;
-    const std::size_t l = level(p);
-    Vector_3 q;
-    for(int axis = 0; axis < 3; ++axis)
-      q(axis) = std::floor(in_cells(p(axis), axis, l) - m_shifts[l](axis)) * cell(l);
-    return q;
+    const int level = m_cells.level(p);
+    const Vector_3 cells = in_cells(p, level) - m_shifts[level];
+    return cells.array().floor() * m_cells.width(level);
   }
 
   // a length that the caller gave
@@ -105,82 +94,13 @@ public:
   }
 
 private:
-  // a point whose cells are finer than most, and the exponent of their size
-  typedef std::pair<std::array<double, 3>, int> Fine_point;
-
-  static std::array<double, 3> coordinates(const Vector_3& p) { return {{p(0), p(1), p(2)}}; }
-
-  static bool is_before(const Fine_point& p, const Fine_point& q)
+  Vector_3 in_cells(const Vector_3& p, int level) const
   {
-    return p.first < q.first || (p.first == q.first && p.second > q.second);
-  }
-
-  // A cell of 2^-exponent is as small as it may be for rounding not to take coordinates to other cells up
-  // to a thousand diagonals away from the origin, where it is 1e-13: the largest gap between random
-  // numbers in [0, 1) is about log(n) / n, one half of it is on each side of the border, and the second
-  // largest gap must not be taken for the largest.
-  static int coarsest_exponent(double number)
-  {
-    const double far_above_rounding = 8e-12, largest = 36;
-    return int(
-      (std::min)(largest, std::log2(0.5 * std::log(number) / number / far_above_rounding)));
-  }
-
-  // A cell is at most 2^-10 of the smallest height of a point's faces: a turn of a tenth of a degree, or
-  // two where grids meet, since points of two grids move by up to two cells against one another.
-  // False if some face is too thin.
-  bool add_fine_points(const Mesh_copy& copy, double diagonal)
-  {
-    const int turn = 10, finest = 40;
-    const Indexed_mesh& mesh = copy.mesh;
-    const auto point = [&](int v) -> const Vector_3& { return copy.points[v]; };
-    std::vector<int> exponents(mesh.number_of_vertices(), m_exponent);
-    for(int f = 0; f < mesh.number_of_faces(); ++f)
-    {
-      double height = std::numeric_limits<double>::infinity();
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        height = (std::min)(height, height_at_corner(mesh, point, c));
-      const double exponent =
-        (std::max)(double(m_exponent), std::ceil(turn - std::log2(height / diagonal)));
-      if(!(exponent <= finest))
-        return false;
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      {
-        int& e = exponents[mesh.corner_vertex[c]];
-        e = (std::max)(e, int(exponent));
-      }
-    }
-    for(int v = 0; v < mesh.number_of_vertices(); ++v)
-      if(exponents[v] > m_exponent)
-        m_fine_points.emplace_back(coordinates(copy.points[v]), exponents[v]);
-    return true;
-  }
-
-  // 0 for the grid of most points, which is the coarsest
-  std::size_t level(const Vector_3& p) const
-  {
-    if(m_fine_points.empty())
-      return 0;
-    const std::array<double, 3> key = coordinates(p);
-    const auto i = std::lower_bound(
-      m_fine_points.begin(), m_fine_points.end(), key,
-      [](const Fine_point& q, const std::array<double, 3>& k) { return q.first < k; });
-    return i != m_fine_points.end() && i->first == key ? std::size_t(i->second - m_exponent) : 0;
-  }
-
-  double cell(std::size_t level) const { return std::ldexp(m_resolution, -int(level)); }
-
-  double in_cells(double coordinate, int axis, std::size_t level) const
-  {
-    return (coordinate - m_origin(axis)) / m_unit / cell(level);
+    return (p - m_origin) / m_unit / m_cells.width(level);
   }
 
   void lay_grids(const std::vector<const Mesh_copy*>& copies)
   {
-    int finest = m_exponent;
-    for(const Fine_point& p : m_fine_points)
-      finest = (std::max)(finest, p.second);
-    m_shifts.assign(std::size_t(finest - m_exponent) + 1, Vector_3::Zero());
     const auto for_each_point = [](const Mesh_copy& copy, const auto& visit) {
       for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
         if(!copy.mesh.is_isolated(v))
@@ -188,21 +108,20 @@ private:
     };
     m_origin.setConstant(std::numeric_limits<double>::infinity());
     for_each_point(*copies[0], [&](const Vector_3& p) { m_origin = m_origin.cwiseMin(p); });
-    std::vector<std::vector<double>> parts(m_shifts.size()); // of a cell
-    for(int axis = 0; axis < 3; ++axis)
-    {
-      for(std::vector<double>& p : parts)
-        p.clear();
-      for(const Mesh_copy* copy : copies)
-        for_each_point(*copy, [&](const Vector_3& p) {
-          const std::size_t l = level(p);
-          const double cells = in_cells(p(axis), axis, l);
-          parts[l].push_back(cells - std::floor(cells));
-        });
-      for(std::size_t l = 0; l < parts.size(); ++l)
-        if(!parts[l].empty())
-          m_shifts[l](axis) = middle_of_gap(parts[l]);
-    }
+    // where points lie in their cells, per level and axis
+    std::vector<std::array<std::vector<double>, 3>> parts(m_cells.number_of_levels());
+    for(const Mesh_copy* copy : copies)
+      for_each_point(*copy, [&](const Vector_3& p) {
+        const int level = m_cells.level(p);
+        const Vector_3 cells = in_cells(p, level);
+        for(int axis = 0; axis < 3; ++axis)
+          parts[level][axis].push_back(cells(axis) - std::floor(cells(axis)));
+      });
+    m_shifts.assign(parts.size(), Vector_3::Zero());
+    for(std::size_t level = 0; level < parts.size(); ++level)
+      for(int axis = 0; axis < 3; ++axis)
+        if(!parts[level][axis].empty())
+          m_shifts[level](axis) = middle_of_gap(parts[level][axis]);
   }
 
   // The middle of the largest interval of the circle [0, 1) that has no number in it; the first of
@@ -223,11 +142,10 @@ private:
     return middle - std::floor(middle);
   }
 
-  int m_exponent = 0; // of most cells
+  Cell_sizes m_cells;
   double m_unit = 1, m_resolution = 0;
   Vector_3 m_origin = Vector_3::Zero();
-  std::vector<Fine_point> m_fine_points; // sorted
-  std::vector<Vector_3> m_shifts;        // per level, in its cells
+  std::vector<Vector_3> m_shifts; // per level, in its cells
 };
 
 } // namespace internal

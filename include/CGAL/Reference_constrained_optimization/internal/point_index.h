@@ -18,12 +18,21 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
+// exact coordinates, for looking up
+typedef std::array<double, 3> Point_key;
+
+inline Point_key point_key(const Vector_3& p)
+{
+  return {{p.x() + 0., p.y() + 0., p.z() + 0.}}; // no -0
+}
+
+template <typename Value>
+using Point_map = std::unordered_map<Point_key, Value, boost::hash<Point_key>>;
+
 // Which of some points has exactly the given coordinates. A mesh often is its own reference, or
 // shares vertices with it: where they lie need not be searched for.
 class Point_index
 {
-  typedef std::array<double, 3> Key;
-
 public:
   // leaves out the vertices for which is_used(v) is false
   template <typename IsUsed>
@@ -33,7 +42,7 @@ public:
     for(int v = 0; v < int(points.size()); ++v)
       if(is_used(v))
       {
-        const auto inserted = m_vertex.emplace(key(points[v]), v);
+        const auto inserted = m_vertex.emplace(point_key(points[v]), v);
         if(!inserted.second)
           inserted.first->second = -1; // there are several
       }
@@ -42,14 +51,12 @@ public:
   // -1 if there is none, or more than one
   int find(const Vector_3& p) const
   {
-    const auto found = m_vertex.find(key(p));
+    const auto found = m_vertex.find(point_key(p));
     return found == m_vertex.end() ? -1 : found->second;
   }
 
 private:
-  static Key key(const Vector_3& p) { return {{p.x() + 0., p.y() + 0., p.z() + 0.}}; } // no -0
-
-  std::unordered_map<Key, int, boost::hash<Key>> m_vertex;
+  Point_map<int> m_vertex;
 };
 
 } // namespace internal
