@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ANGLE_BARRIER_DENSITY_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ANGLE_BARRIER_DENSITY_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/projected_derivatives.h>
 
 #include <Eigen/Core>
@@ -70,8 +70,6 @@ public:
   }
 
 private:
-  static constexpr double degrees_per_radian = 57.295779513082320877;
-
   // the three angles of a triangle with the given edge matrix, in degrees; negative if it is inverted
   struct Angles
   {

@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FINISHING_STAGE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 
 #include <algorithm>
@@ -141,7 +142,6 @@ public:
   }
 
 private:
-  static constexpr double degrees_per_radian = 57.295779513082320877;
   static constexpr double smallest_step = 0.03, negligible = 0.01; // degrees
   static constexpr double flattest = 6, steepest = 30;             // per degree
 
@@ -267,20 +267,7 @@ private:
     const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
     double least = 60;
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-    {
-      const int v = mesh.corner_vertex[c];
-      const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
-      double sum = 0;
-      for(int k = begin; k < end; ++k)
-      {
-        const int corner = mesh.vertex_corners[k];
-        const Vector_3 a = position(mesh.target(corner)) - position(v);
-        const Vector_3 b = position(mesh.source(mesh.previous(corner))) - position(v);
-        sum += degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
-      }
-      const double mean = sum / (end - begin);
-      least = (std::min)({least, mean, 90 - 0.5 * mean});
-    }
+      least = (std::min)(least, shared_angle(mesh, position, mesh.corner_vertex[c]));
     return least;
   }
 

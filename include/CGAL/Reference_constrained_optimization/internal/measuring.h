@@ -65,18 +65,7 @@ private:
   double m_mean = 0, m_squares = 0;
 };
 
-// angle in degrees between the sides of a face at corner c, from 0 to 180; 0 if a side has length 0
-inline double corner_angle(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int c)
-{
-  const Vector_3& p = points[mesh.source(c)];
-  const Vector_3 a = points[mesh.target(c)] - p;
-  const Vector_3 b = points[mesh.source(mesh.previous(c))] - p;
-  const double degrees_per_radian = 57.295779513082320877;
-  return degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 } // namespace internal
-
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ANGLES_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ANGLES_H
 
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
 
 #include <algorithm>
@@ -73,13 +74,14 @@ Angle_statistics angle_statistics(const FaceGraph& mesh,
                                   const NamedParameters& np = parameters::default_values())
 {
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
+  const auto point = [&](int v) -> const internal::Vector_3& { return copy.points[v]; };
   internal::Moments moments;
   Angle_statistics result;
   for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
   {
     double smallest = 180;
     for(int c = copy.mesh.face_begin[f]; c < copy.mesh.face_begin[f + 1]; ++c)
-      smallest = (std::min)(smallest, internal::corner_angle(copy.mesh, copy.points, c));
+      smallest = (std::min)(smallest, internal::corner_angle(copy.mesh, point, c));
     moments.add(smallest);
     result.number_below_10 += smallest < 10;
     result.number_below_20 += smallest < 20;
@@ -109,9 +111,10 @@ corner_angle_statistics(const FaceGraph& mesh,
                         const NamedParameters& np = parameters::default_values())
 {
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
+  const auto point = [&](int v) -> const internal::Vector_3& { return copy.points[v]; };
   internal::Moments moments;
   for(int c = 0; c < copy.mesh.number_of_corners(); ++c)
-    moments.add(internal::corner_angle(copy.mesh, copy.points, c));
+    moments.add(internal::corner_angle(copy.mesh, point, c));
   Corner_angle_statistics result;
   result.minimum = moments.minimum();
   result.maximum = moments.maximum();

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
 
@@ -57,6 +58,7 @@ minimum_angle_estimate(const FaceGraph& mesh,
 {
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
   const internal::Indexed_mesh& m = copy.mesh;
+  const auto point = [&](int v) -> const internal::Vector_3& { return copy.points[v]; };
   const std::vector<char> is_free =
     internal::free_vertices(m, internal::read_constraints(mesh, internal::cgal_parameters(np), m));
   Minimum_angle_estimate result;
@@ -69,19 +71,12 @@ minimum_angle_estimate(const FaceGraph& mesh,
     if(std::none_of(m.corner_vertex.begin() + begin, m.corner_vertex.begin() + end, is_free_vertex))
       for(int c = begin; c < end; ++c)
         result.of_fixed_faces =
-          (std::min)(result.of_fixed_faces, internal::corner_angle(m, copy.points, c));
+          (std::min)(result.of_fixed_faces, internal::corner_angle(m, point, c));
   }
   for(int v = 0; v < m.number_of_vertices(); ++v)
-  {
-    if(!is_free[v])
-      continue;
-    double sum = 0;
-    for(int k = m.vertex_begin[v]; k < m.vertex_begin[v + 1]; ++k)
-      sum += internal::corner_angle(m, copy.points, m.vertex_corners[k]);
-    const double share = sum / (m.vertex_begin[v + 1] - m.vertex_begin[v]);
-    result.at_free_vertices =
-      (std::min)(result.at_free_vertices, (std::min)(share, 90 - 0.5 * share));
-  }
+    if(is_free[v])
+      result.at_free_vertices =
+        (std::min)(result.at_free_vertices, internal::shared_angle(m, point, v));
   return result;
 }
 
