@@ -27,7 +27,7 @@ namespace CGAL {
  * moves the vertices of a mesh along a reference surface so that an energy falls; the connectivity
  * does not change.
  *
- * Nearly developable disks of faces are flattened bijectively, the energy is minimized in the
+ * Nearly developable disks of faces are flattened, locally injectively, the energy is minimized in the
  * plane, in the metric of the surface and with the disk's boundary fixed, and the vertices are
  * mapped back onto the reference. Where nothing is folded, regions are optimized in the tangent
  * planes of their vertices instead, and for single vertices that are left behind a better place is
@@ -36,9 +36,9 @@ namespace CGAL {
  * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
- * and seed give the same bits for any number of threads, and in other units of length or far away from the
- * origin the same result but for the rounding of coordinates (far away unless faces are thinner than a
- * millionth of the reference's diagonal, or vertices are many).
+ * and seed give the same bits for any number of threads. In other units of length, or up to a thousand
+ * diagonals away from the origin, the result is the same but for the rounding of coordinates, unless a
+ * face is thinner than a billionth of the reference's diagonal (and, rarely, far away).
  *
  * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
  * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads
@@ -62,10 +62,10 @@ namespace CGAL {
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, mesh)`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{geom_traits}
- *     \cgalParamDescription{an instance of a geometric traits class; computations are made with
- *                           `double` whatever its number type}
+ *     \cgalParamDescription{accepted as everywhere in %CGAL and not used: computations are made with
+ *                           `double`, whatever the number type of the points}
  *     \cgalParamType{a model of `Kernel`}
- *     \cgalParamDefault{the kernel of the point type}
+ *     \cgalParamDefault{unused}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{number_of_iterations}
  *     \cgalParamDescription{the largest number of outer iterations; each visits every face that
@@ -113,8 +113,9 @@ namespace CGAL {
  *     \cgalParamDescription{how far mesh and reference may be apart, in units of length: a smooth
  *                           barrier \f$ w\,u^2 / (1 - u) \f$ on the distances of the middles of edges
  *                           and faces from the reference, and of the reference's vertices and the
- *                           middles of its creases (by more than 25 degrees) from the mesh, is added to the energy, and no step may take one of them beyond 1.2
- *                           times the bound. What is further away on input may not become worse.
+ *                           middles of its creases (by more than 25 degrees) from the mesh, is added
+ *                           to the energy, and no step may take one of them beyond 1.1 times the
+ *                           bound. What is further away on input may not become worse.
  *                           Infinity switches the barrier off}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{a quarter of the reference's mean edge length, or, if that is larger, what
@@ -132,16 +133,14 @@ namespace CGAL {
  *     \cgalParamDefault{`4e-3`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{maximum_patch_size}
- *     \cgalParamDescription{the largest number of faces of a patch that is flattened, and about the
- *                           number of faces of one that is not: the active faces are divided evenly
- *                           among these, so that some are larger}
+ *     \cgalParamDescription{the largest number of faces of a patch}
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
  *                       number of triangles, between 400 and 4000, but 1.2 times, 150 at least, for
  *                       energies that prize angles unless `use_on_surface_steps` is `false`; the
- *                       others hold an eighth of the mesh, between 4000 and 20000 triangles, and a
- *                       quarter of that, 1000 at least, once they are held up; a quad counts as two
- *                       triangles}
+ *                       others hold an eighth of the mesh, between 4000 and 20000 triangles, a quarter
+ *                       of that (again and again, 1000 at least) once they are held up, and four
+ *                       times as much where iterations start again; a quad counts as two triangles}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{relax_constraints}
  *     \cgalParamDescription{whether vertices on lines slide along them: border vertices that are

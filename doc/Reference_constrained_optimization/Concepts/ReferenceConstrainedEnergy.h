@@ -15,6 +15,9 @@ have none, but the mesh must have one.
 The object is only read, and must live until the function returns.
 
 \cgalHasModel{CGAL::Reference_constrained_optimization::Minimum_angle_energy}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Quad_regularity_energy}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Quad_angle_energy}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Compatible_remeshing_energy}
 
 \sa `DistortionDensity`
 */
@@ -37,9 +40,9 @@ public:
   depend on the face, for example on a second mesh, keeps them itself, by the position of the face in
   `faces(mesh)`.
 
-  It is called once for every face, in the order of `faces(mesh)`, from the thread that called
-  `CGAL::reference_constrained_optimize()`, before any vertex has moved. What it appends must depend
-  on the input alone.
+  It is called once for every face that is to be optimized (all, or those of the range of faces), in
+  the order of `faces(mesh)`, from the thread that called `CGAL::reference_constrained_optimize()`,
+  before any vertex has moved. What it appends must depend on the input alone.
 
   \throws CGAL::Reference_constrained_optimization::Invalid_input if the energy is not for faces
   like this one. The mesh is then left as it was.

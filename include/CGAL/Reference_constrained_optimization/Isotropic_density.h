@@ -21,7 +21,7 @@ namespace Reference_constrained_optimization {
  */
 struct Singular_value_jet
 {
-  double value = 0;
+  double value = 0;                 ///< the value.
   double d1 = 0, d2 = 0;            ///< first derivatives.
   double d11 = 0, d12 = 0, d22 = 0; ///< second derivatives.
 };

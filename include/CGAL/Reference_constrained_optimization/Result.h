@@ -23,7 +23,7 @@ enum class Status {
   /// during setup: energies and counts of defects are then 0.
   time_limit,
   interrupted,  ///< the visitor said stop; otherwise the same.
-  nothing_to_do ///< no vertex is free to move; only vertices off the reference were projected.
+  nothing_to_do ///< no vertex is free to move; the mesh is as it was.
 };
 
 /*!
@@ -35,9 +35,9 @@ enum class Status {
 struct Stage_times
 {
   double setup = 0;        ///< validation, search structure, location of the vertices.
-  double selection = 0;    ///< growing of patches.
+  double selection = 0;    ///< growing of patches, and dividing the mesh into them.
   double flattening = 0;   ///< parameterization of patches.
-  double optimization = 0; ///< Newton steps in the plane.
+  double optimization = 0; ///< Newton steps, in the plane and on the surface, and searches.
   double acceptance = 0;   ///< mapping back to the reference and testing there.
 };
 
@@ -49,7 +49,7 @@ struct Stage_times
  * Energies are means over the elements of the energy's density, measured on the mesh as its
  * vertices lie on the reference, and always finite: densities continue finitely beyond their cap.
  * Lengths are in the unit of the points; the drift is that of coordinates that are rounded to a
- * millionth of the reference's diagonal at most.
+ * few millionths of the reference's diagonal at most.
  */
 struct Result
 {
@@ -57,9 +57,11 @@ struct Result
   double final_energy = 0;   ///< mean density after the last step.
 
   std::size_t number_of_iterations = 0; ///< outer iterations made (\f$ N_{out} \f$ in the paper).
-  /// patches visited in all iterations; \f$ N_{in} \f$ is this over `number_of_iterations`.
+  /// patches visited, in all iterations and after them (search, finishing stage); \f$ N_{in} \f$ is this
+  /// over `number_of_iterations`.
   std::size_t number_of_patches = 0;
-  std::size_t number_of_rounds = 0; ///< rounds of face-disjoint patches in all iterations.
+  /// rounds of face-disjoint patches, in all iterations and after them.
+  std::size_t number_of_rounds = 0;
   std::size_t number_of_accepted_patches = 0;  ///< patches whose new positions were kept.
   std::size_t number_of_flattened_patches = 0; ///< accepted patches that went through the plane.
 

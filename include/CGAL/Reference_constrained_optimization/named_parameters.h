@@ -49,13 +49,21 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
   {                                                                                                \
     return Named_parameters<K, internal_np::NAME##_t, Cgal_parameters>(k, *this);                  \
   }
+  /// appends the parameter of the same name: see `CGAL::parameters::developability_threshold()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
+  /// appends the parameter of the same name: see `CGAL::parameters::energy_tolerance()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
+  /// appends the parameter of the same name: see `CGAL::parameters::drift_bound()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
+  /// appends the parameter of the same name: see `CGAL::parameters::use_on_surface_steps()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)
+  /// appends the parameter of the same name: see `CGAL::parameters::use_finishing_stage()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)
+  /// appends the parameter of the same name: see `CGAL::parameters::vertex_location_map()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
+  /// appends the parameter of the same name: see `CGAL::parameters::maximum_patch_size()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
+  /// appends the parameter of the same name: see `CGAL::parameters::use_equal_areas()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 };
@@ -97,7 +105,7 @@ namespace parameters {
 
 /// starts a list with \f$ \epsilon_d \f$, the largest cost of a face in a patch's cone proxy.
 CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
-/// starts a list with the relative decrease per iteration below which the optimization stops.
+/// starts a list with the relative decrease per iteration below which iterations come to rest.
 CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
 /// starts a list with how far mesh and reference may be apart, a length.
 CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
