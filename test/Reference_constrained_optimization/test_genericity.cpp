@@ -454,11 +454,12 @@ void test_nearly_folded()
   }
 }
 
+RCO::internal::Mesh_copy copy_of(const Shape& shape) { return {indexed(shape), shape.points}; }
+
 void test_frame()
 {
   const Scope scope("canonical frame");
   using namespace RCO::internal;
-  const auto copy_of = [](const Shape& shape) { return Mesh_copy{indexed(shape), shape.points}; };
   const Mesh_copy regular = copy_of(torus(40, 20));
   const Canonical_frame frame(regular, regular);
   RCO_CHECK(frame.resolution() > 0 && frame.resolution() < 1e-7);
@@ -545,8 +546,8 @@ void test_return_to_start()
   Shape shape = tube;
   const int middle = 0;
   shape.points[middle] = Vector_3(0.95, 0, 0.01);
-  const Mesh_copy copy{indexed(shape), shape.points};
-  Reference_surface surface(Mesh_copy{indexed(tube), tube.points});
+  const Mesh_copy copy = copy_of(shape);
+  Reference_surface surface(copy_of(tube));
   const Element_set elements(RCO::Minimum_angle_energy(),
                              RCO::Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex,
                                                  copy.points.size(), 1, 1, 1));

@@ -460,9 +460,10 @@ void test_point_index()
 // ---------------------------------------------------------------------------- barrier on angles
 
 template <typename Density>
-void test_barrier(const std::string& name, const Density& density)
+void test_barrier(const std::string& name, const Density& density, double steepness)
 {
-  const Scope scope("angle barrier, " + name);
+  const Scope scope("angle barrier, " + name + ", " + std::to_string(steepness) + " per degree");
+  const double unit = 6 / steepness; // degrees
   Eigen::Matrix2d equilateral;
   equilateral << 1, 0.5, 0, std::sqrt(0.75);
   Random random(7);
@@ -477,8 +478,8 @@ void test_barrier(const std::string& name, const Density& density)
     const Vector_3 corners[3] = {Vector_3::Zero(), Vector_3(shape(0, 0), shape(1, 0), 0),
                                  Vector_3(shape(0, 1), shape(1, 1), 0)};
     const double angle = smallest_angle(corners[0], corners[1], corners[2]);
-    const double target = (std::max)(1., angle + random(-6, 4));
-    const internal::Angle_barrier_density<Density> barrier(density, target, 6);
+    const double target = (std::max)(1., angle + unit * random(-6, 4));
+    const internal::Angle_barrier_density<Density> barrier(density, target, steepness);
     RCO_CHECK_EQUAL(barrier.target(), target);
 
     Eigen::Vector4d gradient, plain_gradient;
@@ -488,7 +489,7 @@ void test_barrier(const std::string& name, const Density& density)
       internal::projected_derivatives(density, J, plain_gradient, plain_hessian, 0);
     RCO_CHECK_NEAR(barrier.value(J), value, 1e-12 * value);
     RCO_CHECK_LESS_EQUAL(plain_value, value);
-    if(angle > target + 20. / 6 + 0.01)
+    if(angle > target + 20 / steepness + 0.01)
     {
       RCO_CHECK_EQUAL(value, plain_value);
       RCO_CHECK_EQUAL(barrier.value(J), density.value(J));
@@ -502,22 +503,23 @@ void test_barrier(const std::string& name, const Density& density)
     for(int k = 0; k < 3; ++k)
     {
       const Vector_3 u = corners[(k + 1) % 3] - corners[k], w = corners[(k + 2) % 3] - corners[k];
-      const double x = 6 * (target - std::atan2(u.cross(w).norm(), u.dot(w)) * 180 / pi), h = x - 6;
+      const double x = steepness * (target - std::atan2(u.cross(w).norm(), u.dot(w)) * 180 / pi);
+      const double h = x - 6;
       if(x > -20)
         added += x < 6 ? std::exp(x) : std::exp(6.) * (1 + h + 0.5 * h * h);
       near_the_end = near_the_end || std::abs(x + 20) < 0.1;
     }
     RCO_CHECK_NEAR(value - plain_value, added * density.value(Eigen::Matrix2d::Identity()),
                    1e-9 * value);
-    capped += angle < target - 1;
-    near += std::abs(angle - target) < 1;
+    capped += angle < target - unit;
+    near += std::abs(angle - target) < unit;
 
     const Eigen::Matrix4d lifted = hessian + 1e-10 * hessian.norm() * Eigen::Matrix4d::Identity();
     RCO_CHECK(Eigen::LLT<Eigen::Matrix4d>(lifted).info() == Eigen::Success);
     RCO_CHECK_LESS_EQUAL((hessian - hessian.transpose()).norm(), 1e-12 * hessian.norm());
     if(near_the_end)
       continue;
-    const double h = 1e-6 * J.norm();
+    const double h = 1e-6 * unit * J.norm();
     for(int k = 0; k < 4; ++k)
     {
       const auto at = [&](double t) {
@@ -534,7 +536,7 @@ void test_barrier(const std::string& name, const Density& density)
   RCO_CHECK_LESS(100, plain_again);
 
   // turned over, or without extent
-  const internal::Angle_barrier_density<Density> barrier(density, 30, 6);
+  const internal::Angle_barrier_density<Density> barrier(density, 30, steepness);
   for(const double s : {-1., -1e-9, 0., 1e-9, 1e9})
     for(const double t : {0., 1e-40, 1.})
     {
@@ -664,8 +666,11 @@ int main()
   test_face_towards("torus", scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));
   test_face_towards("tetrahedron", tetrahedron());
   test_point_index();
-  test_barrier("exponential MIPS", RCO::Exponential_MIPS_density(1));
-  test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density());
+  for(const double steepness : {6, 12, 30})
+  {
+    test_barrier("exponential MIPS", RCO::Exponential_MIPS_density(1), steepness);
+    test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density(), steepness);
+  }
 
   test_starting_again();
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);

@@ -206,6 +206,12 @@ void test_quads()
   RCO_CHECK_EQUAL(
     RCO::number_of_nonconvex_quads(make_mesh<Mesh>(dart), make_mesh<Mesh>(plane_grid(5, 5, 2))),
     1u);
+  // however far away the mesh is
+  for(Vector_3& p : dart.points)
+    p.z() += 10;
+  RCO_CHECK_EQUAL(
+    RCO::number_of_nonconvex_quads(make_mesh<Mesh>(dart), make_mesh<Mesh>(plane_grid(5, 5, 2))),
+    1u);
 }
 
 void test_estimate_and_intersections()
