@@ -116,8 +116,6 @@ Shape octahedron()
   return s;
 }
 
-internal::Mesh_copy copy_of(const Shape& s) { return internal::Mesh_copy{indexed(s), s.points}; }
-
 int nearest(const Shape& s, const Vector_3& p)
 {
   int best = 0;

@@ -454,8 +454,6 @@ void test_nearly_folded()
   }
 }
 
-RCO::internal::Mesh_copy copy_of(const Shape& shape) { return {indexed(shape), shape.points}; }
-
 void test_frame()
 {
   const Scope scope("canonical frame");

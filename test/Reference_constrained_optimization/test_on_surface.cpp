@@ -368,7 +368,7 @@ void test_progress()
 void test_face_towards(const std::string& name, const Shape& shape)
 {
   const Scope scope("face towards, " + name);
-  const internal::Reference_surface reference(internal::Mesh_copy{indexed(shape), shape.points});
+  const internal::Reference_surface reference(copy_of(shape));
   const Indexed_mesh& mesh = reference.mesh();
   Random random(5);
   const auto check_from = [&](const internal::Surface_point& from, const std::set<int>& around) {

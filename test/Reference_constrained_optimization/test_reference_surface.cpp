@@ -17,7 +17,7 @@ using namespace rco_test;
 
 internal::Reference_surface surface_of(const Shape& shape)
 {
-  return internal::Reference_surface(internal::Mesh_copy{indexed(shape), shape.points});
+  return internal::Reference_surface(copy_of(shape));
 }
 
 // q is the closest point of a convex body to p if no corner w of the body is on p's side of the

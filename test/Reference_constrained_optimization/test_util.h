@@ -9,6 +9,7 @@
 #define RCO_TEST_UTIL_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 
 #include <algorithm>
 #include <array>
@@ -212,6 +213,11 @@ inline Indexed_mesh indexed(const Shape& shape)
     begins.push_back(int(corners.size()));
   }
   return Indexed_mesh(begins, corners, int(shape.points.size()));
+}
+
+inline CGAL::Reference_constrained_optimization::internal::Mesh_copy copy_of(const Shape& shape)
+{
+  return {indexed(shape), shape.points};
 }
 
 // nx times ny squares in the xy-plane, split along alternating diagonals (or not at all)
