@@ -79,6 +79,8 @@ struct Result
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.
+  /// edges of the mesh that were detected to lie on feature lines, and kept there.
+  std::size_t number_of_feature_edges = 0;
 
   /// the bound that the drift barrier was set up with, in units of length of the points; infinite if
   /// it was off.

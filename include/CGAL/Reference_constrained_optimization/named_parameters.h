@@ -21,6 +21,7 @@ enum use_finishing_stage_t { use_finishing_stage };
 enum vertex_location_map_t { vertex_location_map };
 enum maximum_patch_size_t { maximum_patch_size };
 enum use_equal_areas_t { use_equal_areas };
+enum detect_features_t { detect_features };
 
 } // namespace internal_np
 
@@ -65,6 +66,8 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
   CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
   /// appends the parameter of the same name: see `CGAL::parameters::use_equal_areas()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
+  /// appends the parameter of the same name: see `CGAL::parameters::detect_features()`.
+  CGAL_RCO_ADD_NAMED_PARAMETER(detect_features)
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 };
 
@@ -119,6 +122,8 @@ CGAL_RCO_ADD_NAMED_PARAMETER(vertex_location_map)
 CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
 /// starts a list with whether a compatible mesh's source is scaled to the area of the reference.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
+/// starts a list with whether feature lines are detected and kept.
+CGAL_RCO_ADD_NAMED_PARAMETER(detect_features)
 /// @}
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 

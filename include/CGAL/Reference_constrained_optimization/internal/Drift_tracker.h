@@ -42,7 +42,7 @@ public:
   {
     double sum = 0;
     for(int s = 0; s < int(m_samples.size()); ++s)
-      sum += patch.barrier.value(m_samples[s].distance, patch.bound_of_triangle(s / 4));
+      sum += patch.barrier.value(m_samples[s].distance, m_samples[s].bound);
     for(const Patch::Guest& guest : m_guests)
       sum += patch.barrier.value(guest.distance, guest.bound);
     return sum;
@@ -79,7 +79,8 @@ private:
                               triangle_point(triangles, before, s / 4, barycentric))
                                .norm();
           sample.distance = patch.samples[s].distance + way;
-          if(Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(s / 4)))
+          sample.bound = patch.samples[s].bound;
+          if(Drift_barrier::is_felt(sample.distance, sample.bound))
             locate_sample(patch, reference, now, s, sample);
         }
   }

@@ -36,6 +36,7 @@ struct Loop_parameters
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
   bool relax_constraints = false;
+  bool detect_features = true; // where the caller constrains no edges
   bool use_on_surface_steps = true;
   int on_surface_newton_steps = 1; // per proposal
   bool use_active_set = true;      // else every iteration visits the whole mesh

@@ -68,6 +68,9 @@ struct Optimization_state
   // A cosine: what comes as close as that to being turned over or folded counts as if it were. Where
   // coordinates were rounded to a frame this cannot have hidden anything then.
   double caution = 0;
+  // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
+  // mesh, whether its turn against R is bounded; empty if none is
+  std::vector<char> is_mechanical = {}, bounds_turn = {};
 
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 

@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/drift_barrier.h>
 #include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ struct Patch
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   double caution = 0;                         // see Optimization_state
+  std::vector<char> bounds_turn;              // per face; empty if no face's turn is bounded
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
 
@@ -53,10 +55,13 @@ struct Patch
   // mesh, known where the barrier is felt.
   Drift_barrier barrier;
   double drift_bound = 0;
-  std::vector<double> drift_bounds; // per polygon, if any is beyond the bound from the start
-  double bound_of_triangle(int t) const
+  const std::vector<double>* local_bounds = nullptr; // per triangle of R, if it is not the same everywhere
+  std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
+  // of a sample of a triangle of the patch whose closest point is in a triangle of R
+  double bound_of(int triangle, int reference_face) const
   {
-    return drift_bounds.empty() ? drift_bound : drift_bounds[polygon_of(t)];
+    const double bound = local_bounds ? (*local_bounds)[reference_face] : drift_bound;
+    return least_bounds.empty() ? bound : (std::max)(bound, least_bounds[polygon_of(triangle)]);
   }
 
   // a point of the mesh, see drift_samples.h
@@ -64,6 +69,7 @@ struct Patch
   {
     int face = -1; // of R, where its closest point is
     double distance = 0;
+    double bound = 0; // there
     Vector_3 direction = Vector_3::Zero();
   };
   std::vector<Sample> samples;
@@ -147,6 +153,8 @@ public:
         patch.elements.push_back(element);
       }
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
+      if(!state.bounds_turn.empty())
+        patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
     const int n = int(patch.vertices.size());

@@ -135,7 +135,7 @@ private:
           continue;
         Patch::Sample sample = patch.samples[s];
         locate_sample(patch, m_reference, vertex, s, sample);
-        add(sample.distance, patch.bound_of_triangle(s / 4));
+        add(sample.distance, sample.bound);
       }
       for(const int g : m_guests[patch.polygon_of(t)])
       {

@@ -6,6 +6,9 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ACCEPTANCE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Drift_tracker.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_turn.h>
+#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
@@ -70,6 +73,7 @@ public:
   {
     Decision decision;
     m_limits = limits;
+    m_reference = &state.reference;
     if(is_first)
     {
       prepare(patch, state);
@@ -138,6 +142,7 @@ private:
     std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per element: cosine of its smallest angle
+    std::vector<double> turns; // per face: cosine of its turn against R, where that is bounded
   };
 
   void prepare(const Patch& patch, const Optimization_state& state)
@@ -153,6 +158,7 @@ private:
     m_before.folded.assign(patch.polygons.number_of_corners(), 0);
     m_before.densities.resize(patch.elements.size());
     m_before.cosines.resize(patch.elements.size());
+    m_before.turns.assign(patch.bounds_turn.size(), 1);
     m_is_changed.assign(n, 0);
     m_changed.resize(n);
     for(int f = 0; f < n; ++f)
@@ -175,6 +181,9 @@ private:
       details.normals[f] = face_normal(mesh, vertex, f);
       details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f], patch.caution) +
                                 is_nonconvex(mesh, vertex, f));
+      if(!patch.bounds_turn.empty() && patch.bounds_turn[f])
+        details.turns[f] =
+          face_turn_cosine(mesh, *m_reference, vertex, f, details.normals[f]);
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
       {
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
@@ -258,22 +267,30 @@ private:
         add_element(patch, e);
       }
     }
+    static const double cosine_of_turn = std::cos(knob("RCO_TURN", 15) / degrees_per_radian);
+    for(std::size_t f = 0; f < m_after.turns.size(); ++f)
+      if(m_after.turns[f] < cosine_of_turn && m_after.turns[f] < m_before.turns[f])
+      {
+        exceeds = true;
+        add_face(mesh, int(f));
+      }
     // what the barrier is felt by more than what an element holds is as good as beyond the bound
     const double much = 0.5 * std::abs(before.energy) / double(patch.elements.size());
-    const auto visit = [&](double distance, double old, double bound) {
-      if(!(distance > old) || !Drift_barrier::is_felt(distance, bound))
+    const auto visit = [&](double distance, double bound, double old, double old_bound) {
+      if(!(distance * old_bound > old * bound) || !Drift_barrier::is_felt(distance, bound))
         return false;
       const bool is_beyond = distance > Drift_barrier::last_part * bound;
       exceeds = exceeds || is_beyond;
       return is_beyond ||
-             patch.barrier.value(distance, bound) > patch.barrier.value(old, bound) + much;
+             patch.barrier.value(distance, bound) > patch.barrier.value(old, old_bound) + much;
     };
     for(std::size_t s = 0; s < samples().size(); ++s)
-      if(visit(samples()[s].distance, patch.samples[s].distance,
-               patch.bound_of_triangle(int(s / 4))))
+      if(visit(samples()[s].distance, samples()[s].bound, patch.samples[s].distance,
+               patch.samples[s].bound))
         add_triangle(patch, int(s / 4));
     for(std::size_t i = 0; i < guests().size(); ++i)
-      if(visit(guests()[i].distance, patch.guests[i].distance, guests()[i].bound))
+      if(visit(guests()[i].distance, guests()[i].bound, patch.guests[i].distance,
+               patch.guests[i].bound))
         add_face(mesh, guests()[i].polygon);
     return exceeds;
   }
@@ -355,6 +372,7 @@ private:
   }
 
   Interruption* m_interruption;
+  const Reference_surface* m_reference = nullptr;
   Limits m_limits;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/drift_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
+#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 #include <CGAL/Reference_constrained_optimization/internal/point_index.h>
 
 #include <algorithm>
@@ -48,12 +49,18 @@ public:
     const double samples = *std::max_element(distances.begin(), distances.end());
     m_initial_drift = (std::max)(guests, samples);
     m_bound = at_least ? (std::max)(bound, m_initial_drift / Drift_barrier::last_part) : bound;
+    if(at_least)
+      bound_locally(state);
+    const auto allowed = [](double bound, double distance) {
+      return (std::max)(bound, distance / Drift_barrier::last_part);
+    };
     if(!at_least && guests > m_bound)
-      for(const double d : m_distance)
-        m_witness_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
-    if(!at_least && samples > m_bound)
+      m_witness_bounds.assign(m_distance.size(), m_bound);
+    for(std::size_t r = 0; r < m_witness_bounds.size(); ++r)
+      m_witness_bounds[r] = allowed(m_witness_bounds[r], m_distance[r]);
+    if(samples > (at_least ? 0 : m_bound))
       for(const double d : distances)
-        m_face_bounds.push_back((std::max)(m_bound, d / Drift_barrier::last_part));
+        m_least_bounds.push_back(d / Drift_barrier::last_part);
   }
 
   double bound() const { return m_bound; }
@@ -78,9 +85,11 @@ public:
       return;
     patch.barrier = m_barrier;
     patch.drift_bound = m_bound;
-    if(!m_face_bounds.empty())
+    if(!m_local_bounds.empty())
+      patch.local_bounds = &m_local_bounds;
+    if(!m_least_bounds.empty())
       for(const int f : patch.faces)
-        patch.drift_bounds.push_back(m_face_bounds[f]);
+        patch.least_bounds.push_back(m_least_bounds[f]);
     const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
 
     const int n = patch.triangles().number_of_faces();
@@ -97,8 +106,9 @@ public:
           const Known& known = m_known[known_sample(state.mesh, patch, s)];
           sample.face = known.face;
           sample.distance = known.distance;
+          sample.bound = known.face >= 0 ? patch.bound_of(t, known.face) : 0;
         }
-        if(m_known.empty() || Drift_barrier::is_felt(sample.distance, patch.bound_of_triangle(t)))
+        if(sample.face < 0 || Drift_barrier::is_felt(sample.distance, sample.bound))
           locate_sample(patch, state.reference, vertex, s, sample);
       }
 
@@ -263,8 +273,15 @@ private:
       for(int f = begin; f < end; ++f)
       {
         check_now_and_then(interruption, f);
-        if(!state.counts(f) || is_face_of_reference(state, f))
+        if(!state.counts(f))
           continue;
+        if(is_face_of_reference(state, f))
+        {
+          if(!is_split)
+            for(int i = 0; i < 4; ++i)
+              m_known[4 * std::size_t(f) + i].face = f;
+          continue;
+        }
         // as a fan: a quad is split this way or that
         const int first = mesh.face_begin[f];
         for(int c = first + 1; c + 1 < mesh.face_begin[f + 1]; ++c)
@@ -307,9 +324,30 @@ private:
     return true;
   }
 
+  // by the size of what is there
+  void bound_locally(const Optimization_state& state)
+  {
+    const Reference_surface& reference = state.reference;
+    const Indexed_mesh& mesh = reference.mesh();
+    const std::vector<double> bounds = local_bounds(reference, state.is_mechanical, m_bound);
+    m_local_bounds.resize(mesh.number_of_faces());
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+    {
+      const int* v = &mesh.corner_vertex[mesh.face_begin[f]];
+      m_local_bounds[f] = (std::min)({bounds[v[0]], bounds[v[1]], bounds[v[2]]});
+    }
+    m_witness_bounds = bounds;
+    for(int r = mesh.number_of_vertices(); r < reference.number_of_witnesses(); ++r)
+    {
+      const int c = reference.crease(r);
+      m_witness_bounds.push_back((std::min)(bounds[mesh.source(c)], bounds[mesh.target(c)]));
+    }
+  }
+
   Drift_barrier m_barrier;
   double m_bound = 0, m_initial_drift = 0;
-  std::vector<double> m_face_bounds;    // per face of the mesh; empty if all are the bound
+  std::vector<double> m_local_bounds;   // per triangle of R; empty if all are the bound
+  std::vector<double> m_least_bounds;   // per face of the mesh: what it has from the start; may be empty
   std::vector<double> m_witness_bounds; // per witness; empty if all are the bound
   std::vector<Known> m_known; // four per face if all are triangles; no less than the true distance
   // the guests of every face are a list: the first one, and the next one after each witness

@@ -84,10 +84,11 @@ void locate_sample(const Patch& patch,
   {
     sample.face = f;
     sample.distance = 0;
+    sample.bound = patch.bound_of(s / 4, f);
     return;
   }
   const Vector_3 p = triangle_point(mesh, vertex, s / 4, sample_barycentric(i));
-  const double unfelt = Drift_barrier::free_part * patch.bound_of_triangle(s / 4);
+  const double unfelt = Drift_barrier::free_part * sample.bound;
   sample.distance = std::numeric_limits<double>::infinity();
   std::array<int, 4> starts;
   int number_of_starts = 0;
@@ -109,6 +110,7 @@ void locate_sample(const Patch& patch,
     start(sample.face);
   for(int k = 0; k < number_of_corners; ++k)
     start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
+  sample.bound = patch.bound_of(s / 4, sample.face);
 }
 
 // Looks for the closest point of the patch to a point of R, from where it was last.

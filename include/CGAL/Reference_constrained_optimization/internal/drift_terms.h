@@ -47,9 +47,8 @@ public:
     for(int s = 0; s < int(patch.samples.size()); ++s)
     {
       const Patch::Sample& sample = patch.samples[s];
-      const double bound = patch.bound_of_triangle(s / 4);
-      if(Drift_barrier::is_felt(sample.distance, bound))
-        add(s / 4, sample_barycentric(s % 4), sample.distance, bound, sample.direction);
+      if(Drift_barrier::is_felt(sample.distance, sample.bound))
+        add(s / 4, sample_barycentric(s % 4), sample.distance, sample.bound, sample.direction);
     }
     for(const Patch::Guest& guest : patch.guests)
       if(Drift_barrier::is_felt(guest.distance, guest.bound))

@@ -10,6 +10,8 @@
 #include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_range.h>
+#include <CGAL/Reference_constrained_optimization/internal/feature_constraints.h>
+#include <CGAL/Reference_constrained_optimization/internal/feature_detection.h>
 #include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
@@ -120,16 +122,36 @@ void optimize(const FaceRange& range,
                            {},        is_in_range, frame.caution()};
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
+  const bool detects = loop_parameters.detect_features &&
+                       parameters::is_default_parameter<NamedParametersReference,
+                                                        CGAL::internal_np::edge_is_constrained_t>::value;
+  Detected_features features;
+  if(detects)
+    features = Feature_detection(surface).take();
+  interruption.check();
+  if(is_own)
+    constrain(features_of_polygons(copy.mesh, surface, features.is_feature), copy.mesh, constraints,
+              result);
+  else if(features.number_of_edges > 0)
+    constrain(traced_features(copy.mesh, copy.points, surface, features.is_feature), copy.mesh,
+              constraints, result);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
   check_distances(copy.points, state, frame);
+  state.is_mechanical = std::move(features.is_mechanical);
+  state.bounds_turn = faces_on(state, state.is_mechanical);
   // nothing of R would be closest to such a mesh
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
-  if(loop_parameters.relax_constraints)
-    Sliding_vertices(state, constraints,
-                     read_reference_lines(reference, np_reference, reference_copy.mesh, surface),
+  if(loop_parameters.relax_constraints || result.number_of_feature_edges > 0)
+  {
+    Reference_lines lines =
+      read_reference_lines(reference, np_reference, reference_copy.mesh, surface);
+    if(!is_own && result.number_of_feature_edges > 0)
+      lines.set_features(feature_edges(surface.mesh(), features.is_feature));
+    Sliding_vertices(state, constraints, lines, loop_parameters.relax_constraints,
                      frame.resolution(), result);
+  }
   Caller_view view(frame, mesh_points, reference_points, state);
   view.remember_start();
   result.largest_initial_distance = view.largest_distance();

@@ -83,6 +83,12 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
     choose_parameter(get_parameter(np, internal_np::use_finishing_stage), p.use_finishing_stage);
   p.relax_constraints =
     choose_parameter(get_parameter(np, CGAL::internal_np::relax_constraints), p.relax_constraints);
+  const bool has_lines =
+    !parameters::is_default_parameter<NamedParameters,
+                                      CGAL::internal_np::edge_is_constrained_t>::value;
+  p.detect_features =
+    choose_parameter(get_parameter(np, internal_np::detect_features), p.detect_features) &&
+    !has_lines;
   p.use_on_surface_steps =
     choose_parameter(get_parameter(np, internal_np::use_on_surface_steps), p.use_on_surface_steps);
   p.selection.developability_threshold =

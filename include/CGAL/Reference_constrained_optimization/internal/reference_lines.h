@@ -19,7 +19,13 @@ struct Reference_lines
 {
   Line_edges border;
   Line_edges features;             // what the caller says they are, or else where R is sharp
-  bool features_are_given = false; // by the caller
+  bool features_are_given = false; // by the caller, or detected
+
+  void set_features(Line_edges edges)
+  {
+    features = std::move(edges);
+    features_are_given = true;
+  }
 };
 
 // `mesh` is R before its quads were split

@@ -34,6 +34,7 @@ public:
   Sliding_vertices(Optimization_state& state,
                    const Constraints& constraints,
                    const Reference_lines& lines,
+                   bool relaxes_border,
                    double resolution,
                    Result& result)
     : m_state(state),
@@ -50,7 +51,8 @@ public:
     state.line_neighbours = line_neighbours(
       edges, n, position, [&](int v) { return constraints.is_constrained[v] != 0; });
 
-    slide_on(lines.border, [&](int v) { return mesh.is_border_vertex[v] != 0; });
+    if(relaxes_border)
+      slide_on(lines.border, [&](int v) { return mesh.is_border_vertex[v] != 0; });
     slide_on(lines.features, [&](int v) {
       return !mesh.is_border_vertex[v] &&
              (lines.features_are_given || !own_line_is_on_reference(v));
