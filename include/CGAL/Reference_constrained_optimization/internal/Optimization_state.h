@@ -72,6 +72,9 @@ struct Optimization_state
   // mesh, whether its turn against R is bounded; empty if none is
   std::vector<char> is_mechanical = {}, bounds_turn = {};
 
+  // of the input, per element: the smallest, in degrees, if their mean may not fall below what it was
+  std::vector<float> initial_angles = {};
+
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
   // what is not optimized may be where it likes

@@ -39,6 +39,7 @@ struct Patch
   std::vector<char> bounds_turn;              // per face; empty if no face's turn is bounded
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
+  double initial_angles = 0; // of the input: sum of the elements' smallest, in degrees; 0: of no matter
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -151,6 +152,8 @@ public:
         for(int& v : element.vertices)
           v = m_local[v];
         patch.elements.push_back(element);
+        if(!state.initial_angles.empty())
+          patch.initial_angles += state.initial_angles[e];
       }
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
       if(!state.bounds_turn.empty())

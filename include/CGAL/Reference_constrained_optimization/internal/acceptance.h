@@ -26,6 +26,7 @@ struct Patch_measure
 {
   double energy = 0;
   double drift_energy = 0;  // what the drift barrier adds
+  double angles = 0; // sum of the elements' smallest, in degrees, where their mean may not fall
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -106,7 +107,10 @@ public:
       const bool exceeds = find_offenders(patch, decision.before);
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.has_fallen_from(decision.before);
-      if(m_limits.accepts_all || (!exceeds && (defects < 0 || (defects == 0 && falls))))
+      const double least_angles = (std::min)(decision.before.angles, patch.initial_angles);
+      const bool keeps_angles = defects < 0 || decision.after.angles >= least_angles;
+      if(m_limits.accepts_all ||
+         (!exceeds && keeps_angles && (defects < 0 || (defects == 0 && falls))))
       {
         decision.accepted = true;
         decision.is_final = m_limits.accepts_all;
@@ -114,7 +118,12 @@ public:
         return decision;
       }
       if(defects <= 0 && !exceeds)
-        find_risen(patch, decision);
+      {
+        if(keeps_angles)
+          find_risen(patch, decision);
+        else
+          find_sharper(patch);
+      }
       if(!m_offenders.empty() && attempt < local_attempts)
         cut_offenders(patch);
       else
@@ -142,7 +151,9 @@ private:
     std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per element: cosine of its smallest angle
-    std::vector<double> turns; // per face: cosine of its turn against R, where that is bounded
+    // where the turn of faces is bounded: cosines per face of its turn against R, and per corner of that
+    // of its edge, at the first of the two
+    std::vector<double> turns, edge_turns;
   };
 
   void prepare(const Patch& patch, const Optimization_state& state)
@@ -159,6 +170,7 @@ private:
     m_before.densities.resize(patch.elements.size());
     m_before.cosines.resize(patch.elements.size());
     m_before.turns.assign(patch.bounds_turn.size(), 1);
+    m_before.edge_turns.assign(patch.bounds_turn.empty() ? 0 : patch.outside_face.size(), 1);
     m_is_changed.assign(n, 0);
     m_changed.resize(n);
     for(int f = 0; f < n; ++f)
@@ -194,6 +206,10 @@ private:
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       {
         const int o = mesh.opposite[c];
+        if(!patch.bounds_turn.empty() && patch.bounds_turn[f] && (o >= 0 || patch.outside_face[c] >= 0))
+          details.edge_turns[o >= 0 ? (std::min)(c, o) : c] =
+            cosine(details.normals[f],
+                   o >= 0 ? details.normals[mesh.corner_face[o]] : m_outside_normal[c]);
         if(o >= 0)
           details.folded[(std::min)(c, o)] =
             is_folded(details.normals[f], details.normals[mesh.corner_face[o]], patch.caution);
@@ -202,12 +218,21 @@ private:
       }
   }
 
+  static double cosine(const Vector_3& a, const Vector_3& b)
+  {
+    const double lengths = a.norm() * b.norm();
+    return lengths > 0 ? a.dot(b) / lengths : 1.;
+  }
+
   // in a fixed order, whatever was measured when
   static Patch_measure sum_up(const Patch& patch, const Details& details)
   {
     Patch_measure m;
     for(const double d : details.densities)
       m.energy += d;
+    if(patch.initial_angles > 0)
+      for(const double c : details.cosines)
+        m.angles += degrees(c);
     for(const char flipped : details.flipped)
       m.inner_defects += flipped;
     for(std::size_t c = 0; c < details.folded.size(); ++c)
@@ -267,7 +292,16 @@ private:
         add_element(patch, e);
       }
     }
-    static const double cosine_of_turn = std::cos(knob("RCO_TURN", 15) / degrees_per_radian);
+    static const double cosine_of_turn = std::cos(knob("RCO_TURN", 20) / degrees_per_radian);
+    static const double cosine_of_edge_turn = std::cos(knob("RCO_ET", 38) / degrees_per_radian);
+    for(std::size_t c = 0; c < m_after.edge_turns.size(); ++c)
+      if(m_after.edge_turns[c] < cosine_of_edge_turn && m_after.edge_turns[c] < m_before.edge_turns[c])
+      {
+        exceeds = true;
+        add_face(mesh, mesh.corner_face[c]);
+        if(mesh.opposite[c] >= 0)
+          add_face(mesh, mesh.corner_face[mesh.opposite[c]]);
+      }
     for(std::size_t f = 0; f < m_after.turns.size(); ++f)
       if(m_after.turns[f] < cosine_of_turn && m_after.turns[f] < m_before.turns[f])
       {
@@ -305,6 +339,20 @@ private:
       if(after > 1.5 * before || after > before + much)
         add_element(patch, e);
     }
+  }
+
+  // where the mean of angles falls below the input's: the elements whose angles fall
+  void find_sharper(const Patch& patch)
+  {
+    const double little = 0.1; // degrees
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+      if(degrees(m_after.cosines[e]) < degrees(m_before.cosines[e]) - little)
+        add_element(patch, e);
+  }
+
+  static double degrees(double cosine)
+  {
+    return degrees_per_radian * std::acos((std::min)(1., cosine));
   }
 
   void add(int v)

@@ -64,6 +64,7 @@ public:
   }
 
   double bound() const { return m_bound; }
+  void set_barrier(const Drift_barrier& barrier) { m_barrier = barrier; }
 
   // the largest distance of a sample when the guard was initialized, and now
   double initial_drift() const { return m_initial_drift; }

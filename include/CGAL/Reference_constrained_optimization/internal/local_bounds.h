@@ -34,7 +34,7 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
                                         double default_bound)
 {
   const double scale = default_bound / (0.25 * reference.mean_edge_length());
-  const double mechanical_bound = knob("RCO_MB", 0.2) * default_bound, shortest_part = scale * knob("RCO_MS", 0.25), mean_part = scale * knob("RCO_LB", 0.5);
+  const double mechanical_bound = knob("RCO_MB", 0.2) * default_bound, shortest_part = scale * knob("RCO_MS", 0.5), mean_part = scale * knob("RCO_LB", 0.5);
   const double grading = knob("RCO_GR", 0.5);
   const double floor = knob("RCO_FL", 0.02) * default_bound;
   const Indexed_mesh& mesh = reference.mesh();

@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/Round_solver.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/exponent_continuation.h>
 #include <CGAL/Reference_constrained_optimization/internal/finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
@@ -46,7 +47,9 @@ public:
              Result& result,
              Interruption& interruption)
     : m_state(state),
-      m_density(density),
+      m_target_density(density),
+      m_exponent(density),
+      m_density(m_exponent.density()),
       m_parameters(parameters),
       m_visitor(visitor),
       m_result(result),
@@ -94,22 +97,15 @@ private:
   void optimize()
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    Global_measure before =
-      measure<ConcurrencyTag>(m_state, m_density, std::numeric_limits<double>::infinity());
-    m_interruption.check();
-    // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
-    // the mean of the better half at most
-    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
-    m_cap = 10 * typical;
-    m_rest_energy = rest_energy(m_state, m_density);
-    m_limits.worst = before.worst;
-    m_limits.bad = 1.5 * typical;
-    m_limits.sharpest = before.sharpest;
     m_limits.accepts_all = m_parameters.accepts_all;
     m_limits.strain_resistance = largest_resistance;
-    before = measure<ConcurrencyTag>(m_state, m_density, m_cap);
-    m_initial_energy = before.energy;
+    m_exponent.template advance<ConcurrencyTag>(m_state);
+    const Global_measure before = scale_to_density();
+    m_limits.sharpest = before.sharpest;
+    m_initial_energy = energy_of_caller();
 
+    if(m_prizes_angles)
+      remember_angles();
     m_interruption.check();
     m_round_solver.initialize(make_drift_guard());
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
@@ -119,6 +115,44 @@ private:
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(iterate_to_convergence(before) && revisits && revisit_worst() && finishes_angles())
       finish_angles();
+  }
+
+  // measures what hangs on the density, and returns how the state stands by it
+  Global_measure scale_to_density()
+  {
+    // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
+    // the mean of the better half at most
+    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
+    m_interruption.check();
+    m_cap = 10 * typical;
+    m_rest_energy = rest_energy(m_state, m_density);
+    const Global_measure now = measure<ConcurrencyTag>(m_state, m_density, m_cap);
+    m_limits.worst = now.worst;
+    m_limits.bad = 1.5 * typical;
+    return now;
+  }
+
+  void remember_angles()
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    m_state.initial_angles.resize(m_state.elements.size());
+    for_each_block<ConcurrencyTag>(m_state.elements.size(), [&](int begin, int end, int) {
+      for(int e = begin; e < end; ++e)
+      {
+        const double cosine = smallest_angle_cosine(m_state.elements[e], vertex);
+        m_state.initial_angles[e] =
+          float(degrees_per_radian * std::acos((std::min)(1., cosine)));
+      }
+    });
+  }
+
+  Drift_barrier make_barrier() const
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    double triangles = 0;
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+      triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
+    return Drift_barrier(0.1 * m_rest_energy / triangles);
   }
 
   // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
@@ -132,15 +166,10 @@ private:
     if(bound > (std::numeric_limits<double>::max)() ||
        (bound < 0 && !m_parameters.use_on_surface_steps))
       return guard;
-    const Indexed_mesh& mesh = m_state.mesh;
     const double smallest = 1e-6 * m_state.reference.mean_edge_length();
-    double triangles = 0;
-    for(int f = 0; f < mesh.number_of_faces(); ++f)
-      triangles += m_state.counts(f) ? mesh.degree(f) - 2 : 0;
-    const Drift_barrier barrier(0.1 * m_rest_energy / triangles);
     guard.initialize<ConcurrencyTag>(
       m_state, bound < 0 ? m_parameters.default_drift_bound : (std::max)(bound, smallest),
-      bound < 0, barrier, &m_interruption);
+      bound < 0, make_barrier(), &m_interruption);
     m_result.drift_bound = guard.bound();
     m_result.initial_drift = guard.initial_drift();
     return guard;
@@ -171,7 +200,7 @@ private:
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
-      m_visitor.on_iteration_end(i, after.energy / double(m_state.elements.size()));
+      m_visitor.on_iteration_end(i, energy_of_caller() / double(m_state.elements.size()));
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
@@ -194,7 +223,13 @@ private:
       // without a test the energy may rise: that is not convergence either
       const bool rises = m_parameters.accepts_all && has_fallen(after.energy, before.energy);
       before = after;
-      if(moves && (repairs || falls || rises))
+      if(m_exponent.template advance<ConcurrencyTag>(m_state))
+      {
+        before = scale_to_density();
+        m_round_solver.drift_guard().set_barrier(make_barrier());
+        m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
+      }
+      else if(moves && (repairs || falls || rises))
       {
         if(m_parameters.use_active_set)
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
@@ -208,6 +243,13 @@ private:
       }
     }
     return m_parameters.number_of_iterations > 0;
+  }
+
+  double energy_of_caller() const
+  {
+    return measure<ConcurrencyTag>(m_state, m_target_density,
+                                   std::numeric_limits<double>::infinity())
+      .energy;
   }
 
   // Whether a few places hold up the large patches that they are in: the steps of the last iteration
@@ -335,7 +377,7 @@ private:
     const auto energy = [&](int f) {
       double sum = 0;
       for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
-        sum += element_energy(m_density, m_state.elements[e], vertex);
+        sum += element_energy(m_target_density, m_state.elements[e], vertex);
       return sum;
     };
     Stage stage(m_state, energy, m_initial_energy, &m_interruption);
@@ -414,7 +456,9 @@ private:
   }
 
   Optimization_state& m_state;
-  const Density& m_density;
+  const Density& m_target_density; // what the caller asked for
+  Exponent_continuation<Density> m_exponent;
+  const Density& m_density; // what is optimized now
   Loop_parameters m_parameters;
   Visitor& m_visitor;
   Result& m_result;

@@ -1,0 +1,106 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_EXPONENT_CONTINUATION_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_EXPONENT_CONTINUATION_H
+
+#include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Where a few elements that nothing can open own the sum, an exponential energy falls at the cost of all
+// the others. So its exponent starts mild, and becomes steeper, up to what is asked for, as long as
+// the worst elements own no more than a part of the energy.
+template <typename Density>
+struct Exponent_continuation
+{
+  explicit Exponent_continuation(const Density& density) : m_density(density) {}
+  const Density& density() const { return m_density; }
+  template <typename ConcurrencyTag>
+  bool advance(const Optimization_state&)
+  {
+    return false;
+  }
+
+private:
+  const Density& m_density;
+};
+
+template <>
+struct Exponent_continuation<Exponential_MIPS_density>
+{
+  explicit Exponent_continuation(const Exponential_MIPS_density& density)
+    : m_target(density),
+      m_density((std::min)(density.exponent_factor(), mildest()))
+  {}
+
+  const Exponential_MIPS_density& density() const { return m_density; }
+
+  // to the steepest exponent that is no matter of a few elements; false if that is what there is
+  template <typename ConcurrencyTag>
+  bool advance(const Optimization_state& state)
+  {
+    const double step = std::sqrt(10.);
+    bool advances = false;
+    while(m_density.exponent_factor() < m_target.exponent_factor())
+    {
+      const double next = m_density.exponent_factor() * step, rounding = 1e-9;
+      const Exponential_MIPS_density steeper =
+        next > (1 - rounding) * m_target.exponent_factor() ? m_target
+                                                            : Exponential_MIPS_density(next);
+      const double own = imbalance<ConcurrencyTag>(state, steeper);
+      if(std::getenv("RCO_V")) fprintf(stderr, "  k %.3g imbalance %.3g\n", steeper.exponent_factor(), own);
+      if(own > knob("RCO_OWN", 20))
+        break;
+      m_density = steeper;
+      advances = true;
+    }
+    return advances;
+  }
+
+private:
+  static double mildest() { return knob("RCO_K0", 0.1); }
+
+  // the mean density of the elements, but for the worst of them, over that of the better half
+  template <typename ConcurrencyTag>
+  static double imbalance(const Optimization_state& state, const Exponential_MIPS_density& density)
+  {
+    const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+    std::vector<double> densities(state.elements.size());
+    for_each_block<ConcurrencyTag>(int(densities.size()), [&](int begin, int end, int) {
+      for(int e = begin; e < end; ++e)
+        densities[e] = element_energy(density, state.elements[e], vertex);
+    });
+    std::sort(densities.begin(), densities.end());
+    const double trimmed = knob("RCO_TRIM", 0.02);
+    const std::size_t half = densities.size() / 2 + 1, most = (std::max)(half, std::size_t((1 - trimmed) * densities.size()));
+    double sum = 0, half_sum = 0;
+    for(std::size_t i = 0; i < most; ++i)
+    {
+      sum += densities[i];
+      if(i + 1 == half)
+        half_sum = sum;
+    }
+    return sum / most / (half_sum / half);
+  }
+
+  const Exponential_MIPS_density& m_target;
+  Exponential_MIPS_density m_density;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_EXPONENT_CONTINUATION_H
