@@ -231,7 +231,7 @@ private:
   {
     const Indexed_mesh& mesh = patch.polygons;
     const int maximum_sweeps = 40, patience = 3; // reach shrinks where a sweep gains nothing
-    const double little = 0.005;                 // part of the gain of all sweeps
+    const double little = 0.001;                 // part of the gain of all sweeps
     double gain_of_all = 0, recent[patience] = {};
     sort_guests(patch);
     m_length.resize(patch.vertices.size());

@@ -187,7 +187,7 @@ private:
     }
   }
 
-  static constexpr double cost_of_search = 300; // for a face, in visits to one
+  static constexpr double cost_of_search = 200; // for a face, in visits to one
 
   // of a face after it was searched: its angle, and the surroundings that it had
   struct Left

@@ -55,8 +55,8 @@ Flaws find_flaws(const Caller_view& view)
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int c = mesh.face_begin[begin]; c < mesh.face_begin[end]; ++c)
         if(mesh.opposite[c] > c)
-          flaws.is_folded[c] = is_folded(normals[mesh.corner_face[c]],
-                                         normals[mesh.corner_face[mesh.opposite[c]]], 0);
+          flaws.is_folded[c] =
+            is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]], 0);
     });
     for(int f = 0; f < n; ++f)
     {
@@ -103,8 +103,8 @@ public:
   // The vertices around those that have returned do so, too; false if there is none.
   bool grow()
   {
-    const std::vector<char> ring = vertices_of<ConcurrencyTag>(
-      m_mesh, faces_at<ConcurrencyTag>(m_mesh, m_has_returned));
+    const std::vector<char> ring =
+      vertices_of<ConcurrencyTag>(m_mesh, faces_at<ConcurrencyTag>(m_mesh, m_has_returned));
     return take_back(ring);
   }
 
