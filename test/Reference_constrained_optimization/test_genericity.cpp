@@ -8,9 +8,11 @@
 #include "test_meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
+#include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/mending.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
@@ -568,10 +570,112 @@ void test_return_to_start()
   RCO_CHECK(same_bits(view.position(middle), start));
 }
 
+// What is wrong in the end is mended where it is, and only there.
+void test_mending()
+{
+  const Scope scope("mending");
+  using namespace RCO::internal;
+  typedef Mending<CGAL::Sequential_tag> Sequential_mending;
+  const int n = 12;
+  const auto id = [](int i, int j) { return j * (n + 1) + i; };
+  const auto with_view = [&](bool quads, const Shape& given, const auto& test) {
+    const Shape seen = plane_grid(n, n, n, quads);
+    const Mesh_copy copy = copy_of(seen);
+    Reference_surface surface(copy);
+    const RCO::Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex,
+                                      copy.points.size(), 1, 1, 1);
+    const Element_set elements = quads ? Element_set(RCO::Quad_angle_energy(), context)
+                                       : Element_set(RCO::Minimum_angle_energy(), context);
+    Optimization_state state{copy.mesh, surface, elements, {}, {}};
+    state.is_free.assign(copy.points.size(), 1);
+    RCO::Result unused;
+    place_on_reference(copy.points, surface, state, unused);
+    const Canonical_frame frame;
+    Caller_view view(frame, given.points, given.points, state);
+    view.remember_start();
+    const auto move = [&](int v, double dx, double dy) {
+      const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
+      state.vertices[v].on_reference = surface.closest(p);
+      state.vertices[v].position = p;
+    };
+    test(view, move);
+  };
+  const Shape triangles = plane_grid(n, n, n);
+  {
+    const Scope s("faces that are turned over");
+    with_view(false, triangles, [&](Caller_view& view, const auto& move) {
+      move(id(3, 3), 1.6, 0.1);
+      Sequential_mending mending(view);
+      RCO_CHECK_LESS(std::size_t(0), find_flaws<CGAL::Sequential_tag>(view).number);
+      mending.run();
+      RCO_CHECK(mending.has_mended());
+      RCO_CHECK(same_bits(view.position(id(3, 3)), triangles.points[id(3, 3)]));
+    });
+  }
+  // a face of the input with an angle far below that of the others leaves them free to move
+  Shape thin = triangles;
+  thin.points[id(1, 1)].x() += 0.95;
+  {
+    // three columns have moved, one vertex too far: others would be turned over if it returned alone
+    const Scope s("growing");
+    with_view(false, thin, [&](Caller_view& view, const auto& move) {
+      for(int j = 4; j < 9; ++j)
+        for(int i = 3; i < 6; ++i)
+          move(id(i, j), i == 3 ? 1.7 : i == 4 ? 1.3 : 0.4, 0);
+      RCO_CHECK_EQUAL(find_flaws<CGAL::Sequential_tag>(view).number, std::size_t(0));
+      move(id(4, 6), 0.2, 0);
+      move(id(10, 10), 0.2, 0.1);
+      const Vector_3 gained = view.position(id(10, 10));
+      RCO_CHECK_LESS(std::size_t(0), find_flaws<CGAL::Sequential_tag>(view).number);
+      Sequential_mending mending(view);
+      mending.run();
+      RCO_CHECK_EQUAL(find_flaws<CGAL::Sequential_tag>(view).number, std::size_t(0));
+      RCO_CHECK(same_bits(view.position(id(3, 6)), thin.points[id(3, 6)]));
+      RCO_CHECK(same_bits(view.position(id(10, 10)), gained));
+    });
+  }
+  {
+    const Scope s("an angle that is smaller by a hair");
+    with_view(false, thin, [&](Caller_view& view, const auto& move) {
+      move(id(8, 8), 0.2, 0.1);
+      const double smallest = find_flaws<CGAL::Sequential_tag>(view).smallest_angle;
+      move(id(1, 1), 1e-9, 0);
+      RCO_CHECK_LESS(find_flaws<CGAL::Sequential_tag>(view).smallest_angle, smallest);
+      const Vector_3 gained = view.position(id(8, 8));
+      Sequential_mending mending(view);
+      mending.run();
+      RCO_CHECK_EQUAL(find_flaws<CGAL::Sequential_tag>(view).smallest_angle, smallest);
+      RCO_CHECK(same_bits(view.position(id(1, 1)), thin.points[id(1, 1)]));
+      RCO_CHECK(same_bits(view.position(id(8, 8)), gained));
+    });
+  }
+  {
+    // the corner goes almost to the diagonal of a quad; in the caller's coordinates the reference's
+    // vertex next to it is a bit further, and so is the corner
+    const Scope s("a quad that is convex only as the frame sees it");
+    const Shape seen = plane_grid(n, n, n, true);
+    Shape given = seen;
+    given.points[id(4, 4)] += Vector_3(1e-5, 1e-5, 0);
+    with_view(true, given, [&](Caller_view& view, const auto& move) {
+      move(id(3, 3), 0.5 - 1e-7, 0.5 - 1e-7);
+      move(id(9, 9), 0.2, 0.1);
+      RCO_CHECK_EQUAL(find_flaws<CGAL::Sequential_tag>(view).number, std::size_t(1));
+      const Vector_3 gained = view.position(id(9, 9));
+      Sequential_mending mending(view);
+      mending.run();
+      RCO_CHECK(mending.has_mended());
+      RCO_CHECK_EQUAL(find_flaws<CGAL::Sequential_tag>(view).number, std::size_t(0));
+      RCO_CHECK(same_bits(view.position(id(3, 3)), given.points[id(3, 3)]));
+      RCO_CHECK(same_bits(view.position(id(9, 9)), gained));
+    });
+  }
+}
+
 int main()
 {
   test_models();
   test_return_to_start();
+  test_mending();
   test_places();
   test_nearly_folded();
   test_frame();

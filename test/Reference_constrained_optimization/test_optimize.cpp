@@ -791,6 +791,20 @@ void test_mesh_types()
 
 // ----------------------------------------------------------------------------------- endings
 
+// A cylinder of strips along its axis, which no vertex can leave for the better: what searches for better
+// places all the same is to give up soon. The visitor is asked again and again while it does.
+void test_nothing_to_gain()
+{
+  const Scope scope("nothing to gain");
+  const int columns = 48;
+  const Shape strips = closed_cylinder(columns, 1, 1, 8);
+  const Outcome out = optimized(strips, strips, Options());
+  RCO_CHECK_LESS(out.result.number_of_patches, std::size_t(25));
+  RCO_CHECK_LESS(out.recorder.questions, 1000);
+  RCO_CHECK_LESS_EQUAL(out.result.final_energy, out.result.initial_energy);
+  RCO_CHECK_LESS_EQUAL(smallest_angle(out.before), smallest_angle(out.after));
+}
+
 void test_endings()
 {
   const Scope scope("endings");
@@ -1028,6 +1042,7 @@ int main()
   timed("thin sheet", test_thin_sheet);
   timed("determinism", test_determinism);
   timed("mesh types", test_mesh_types);
+  timed("nothing to gain", test_nothing_to_gain);
   timed("endings", test_endings);
   timed("exponents", test_exponents);
   timed("drift", [] { test_drift("fandisk.off"); });

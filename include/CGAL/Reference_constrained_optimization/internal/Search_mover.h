@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace CGAL {
@@ -26,7 +27,7 @@ namespace internal {
 // the best of a few places on R around them. Newton steps trust a model that is smooth; where R has a
 // sharp vertex or a crease of the size of an element the energy on R is not, and they end in front of
 // it. A pattern search needs no model. It is slow, but only the few elements that are left behind by
-// the others are its business.
+// the others are its business, and it ends where sweeps over them gain little of what they have gained.
 class Search_mover
 {
 public:
@@ -229,7 +230,9 @@ private:
   bool search(const Patch& patch, const Density& density)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const int maximum_sweeps = 40;
+    const int maximum_sweeps = 40, patience = 3; // reach shrinks where a sweep gains nothing
+    const double little = 0.001;                 // part of the gain of all sweeps
+    double gain_of_all = 0, recent[patience] = {};
     sort_guests(patch);
     m_length.resize(patch.vertices.size());
     collect_groups(patch, density);
@@ -237,6 +240,7 @@ private:
     for(int sweep = 0; goes_on && sweep < maximum_sweeps; ++sweep)
     {
       goes_on = false;
+      double gain = 0;
       for(std::size_t i = 0; i < m_groups.size(); ++i)
       {
         Group& group = m_groups[i];
@@ -247,7 +251,7 @@ private:
         const int v = group.vertices.front();
         const double edge = mean_edge_length_at(
           mesh, [&](int w) -> const Vector_3& { return m_placed[w].position; }, v);
-        if(improve(patch, density, group.vertices, group.reach * edge))
+        if(improve(patch, density, group.vertices, group.reach * edge, gain))
         {
           has_moved = true;
           group.reach = (std::min)(first_reach, 1.5 * group.reach);
@@ -259,6 +263,11 @@ private:
         else
           group.reach *= 0.5;
       }
+      gain_of_all += gain;
+      recent[sweep % patience] = gain;
+      const double recent_gain = std::accumulate(recent, recent + patience, 0.);
+      if(gain_of_all > 0 && sweep >= patience && recent_gain < little * gain_of_all)
+        break;
     }
     for(std::size_t v = 0; v < m_placed.size(); ++v)
       m_length[v] = (m_placed[v].position - patch.placed[v].position).norm();
@@ -288,10 +297,13 @@ private:
   }
 
   // takes a vertex to the best of eight places at the given distance, or several vertices, all the same
-  // way, to the best of four, if that is better than their own
+  // way, to the best of four, if that is better than their own; adds what that gains
   template <typename Density>
-  bool
-  improve(const Patch& patch, const Density& density, const std::vector<int>& group, double reach)
+  bool improve(const Patch& patch,
+               const Density& density,
+               const std::vector<int>& group,
+               double reach,
+               double& gain)
   {
     collect_star(patch, group);
     m_here.clear();
@@ -304,6 +316,7 @@ private:
     Star_measure best = drift(patch);
     best.energy += energy(patch, density);
     best.defects += defects(patch);
+    const double energy_before = best.energy;
     m_best_places = m_here;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
@@ -344,6 +357,7 @@ private:
       put(m_here);
     }
     put(m_best_places);
+    gain += (std::max)(0., energy_before - best.energy); // a defect that is mended may cost energy
     return found;
   }
 

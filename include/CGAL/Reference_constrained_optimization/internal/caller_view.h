@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
+#include <CGAL/Reference_constrained_optimization/internal/for_each_block.h>
 
 #include <algorithm>
 #include <limits>
@@ -32,6 +33,7 @@ public:
       m_mesh(mesh),
       m_reference(reference),
       m_state(state),
+      m_is_own(&mesh == &reference),
       m_rounding(4 * std::numeric_limits<double>::epsilon() *
                  largest_coordinate(state.mesh, [&](int v) -> const Vector_3& { return mesh[v]; }))
   {}
@@ -54,6 +56,11 @@ public:
   // got to since, others might be found.
   void return_to_start() { m_state.vertices = m_start; }
 
+  // the same for one vertex
+  void return_to_start(int v) { m_state.vertices[v] = m_start[v]; }
+
+  const Optimization_state& state() const { return m_state; }
+
   // where a vertex' point of the reference is
   Surface_point location(int v) const
   {
@@ -74,7 +81,24 @@ public:
     if(!m_state.is_free[v])
       return m_mesh[v];
     const Vector_3 p = location(v).position;
-    return has_moved(v) || (p - m_mesh[v]).norm() > m_rounding ? p : m_mesh[v];
+    // vertices that slide may have been put on their lines in the frame, within a few cells
+    const double cells = 4;
+    const double touching =
+      m_is_own ? cells * m_frame.unit() * m_frame.resolution_at(m_mesh[v]) : 0;
+    return has_moved(v) || (p - m_mesh[v]).norm() > (std::max)(m_rounding, touching) ? p
+                                                                                     : m_mesh[v];
+  }
+
+  // of all vertices
+  template <typename ConcurrencyTag>
+  std::vector<Vector_3> positions() const
+  {
+    std::vector<Vector_3> result(m_state.vertices.size());
+    for_each_block<ConcurrencyTag>(int(result.size()), [&](int begin, int end, int) {
+      for(int v = begin; v < end; ++v)
+        result[v] = position(v);
+    });
+    return result;
   }
 
   // of the vertices of what is optimized from the reference, before they move
@@ -91,19 +115,41 @@ public:
   template <typename ConcurrencyTag, typename Density>
   Global_measure measure(const Density& density) const
   {
-    std::vector<Vector_3> positions;
-    for(int v = 0; v < m_state.mesh.number_of_vertices(); ++v)
-      positions.push_back(m_frame.without_rounding(position(v)));
+    return call_as_given<ConcurrencyTag>([&](const std::vector<Vector_3>&) {
+      return internal::measure<ConcurrencyTag>(m_state, density,
+                                               std::numeric_limits<double>::infinity());
+    });
+  }
+
+  // Calls a function of the caller's positions, while the state has them, too, but for unit and origin, and
+  // no caution.
+  template <typename ConcurrencyTag, typename Function>
+  auto call_as_given(const Function& function) const
+  {
+    const std::vector<Vector_3> given = positions<ConcurrencyTag>();
+    std::vector<Vector_3> framed = given;
+    for(Vector_3& p : framed)
+      p = m_frame.without_rounding(p);
     double caution = 0;
     const auto exchange = [&]() {
       std::swap(m_state.caution, caution);
-      for(std::size_t v = 0; v < positions.size(); ++v)
-        std::swap(m_state.vertices[v].position, positions[v]);
+      for(std::size_t v = 0; v < framed.size(); ++v)
+        std::swap(m_state.vertices[v].position, framed[v]);
     };
     exchange();
-    const Global_measure result =
-      internal::measure<ConcurrencyTag>(m_state, density, std::numeric_limits<double>::infinity());
+    const auto result = function(given);
     exchange();
+    return result;
+  }
+
+  // calls a function while the state is what it was at the start
+  template <typename Function>
+  auto call_at_start(const Function& function)
+  {
+    std::vector<Placed_vertex> now = m_start;
+    now.swap(m_state.vertices);
+    const auto result = function();
+    now.swap(m_state.vertices);
     return result;
   }
 
@@ -116,6 +162,7 @@ private:
   const std::vector<Vector_3>& m_mesh;
   const std::vector<Vector_3>& m_reference;
   Optimization_state& m_state;
+  bool m_is_own; // whether the mesh is the reference
   std::vector<Placed_vertex> m_start;
   double m_rounding;
 };

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
+#include <CGAL/Reference_constrained_optimization/internal/worst_faces.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +41,8 @@ inline bool prizes_angles(const Element_set& elements)
 // (Angle_barrier_density), on small patches around the faces with such angles; the energy is what it
 // was everywhere else. What can be reached is not known beforehand: the target runs ahead of the
 // smallest angle, by less where that does not follow. A face that lags behind is given wider
-// surroundings first, up to a few rings: most need none. The best state is kept.
+// surroundings first, up to a few rings: most need none. The best state is kept. Effort is bounded by what
+// it gains: passes live on credit.
 template <typename ConcurrencyTag>
 class Finishing_stage
 {
@@ -83,8 +85,10 @@ public:
     double best = m_minimum;
     const int maximum_passes = 100;
     bool goes_on = true;
+    m_credit = largest_credit;
+    m_left.assign(m_angles.size(), Left());
     save();
-    for(int pass = 0; goes_on && pass < maximum_passes; ++pass)
+    for(int pass = 0; goes_on && m_credit > 0 && pass < maximum_passes; ++pass)
     {
       if(step < smallest_step || m_minimum > equilateral - smallest_step)
         break;
@@ -104,7 +108,7 @@ public:
       const Goal goal{target, steepness, cosine(lent), cosine(lagging)};
       goes_on = visit_below(target, goal, false, visit);
       if(goes_on && m_minimum < lagging)
-        goes_on = visit_below(lagging, goal, true, visit);
+        goes_on = search_below(lagging, goal, visit);
       const double price = 0.02 + 0.05 * (m_minimum - minimum);
       const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price &&
                          m_energy <= m_largest_energy;
@@ -116,6 +120,8 @@ public:
       }
       else
       {
+        const double gain = (std::max)(0., m_minimum - best) + (std::max)(0., mean() - mean_before);
+        m_credit = (std::min)(largest_credit, m_credit + worth * gain);
         if(m_minimum > best)
         {
           save();
@@ -144,6 +150,9 @@ public:
 private:
   static constexpr double smallest_step = 0.03, negligible = 0.01; // degrees
   static constexpr double flattest = 6, steepest = 30;             // per degree
+  // in visits to as many faces as the mesh has: what passes may cost before they gain, and what a degree
+  // of the minimum or of the mean is worth
+  static constexpr double largest_credit = 8, worth = 16;
 
   // Wins back what the mean lost on the way, and more, while the minimum is only held: small patches
   // gain a little everywhere where the large ones before the stage have come to rest.
@@ -178,6 +187,15 @@ private:
     }
   }
 
+  static constexpr double cost_of_search = 200; // for a face, in visits to one
+
+  // of a face after it was searched: its angle, and the surroundings that it had
+  struct Left
+  {
+    double angle = -1;
+    int rings = 0;
+  };
+
   void want(const std::vector<char>& is_wanted)
   {
     m_wanted.is_in = is_wanted;
@@ -194,9 +212,41 @@ private:
     return visit_wanted(goal, searches, visit);
   }
 
+  // Searches around the faces with an angle below the given one, if they are few: around those that are
+  // below what many have. What a search has left, the next one with the same surroundings would leave, too.
+  template <typename Visit>
+  bool search_below(double angle, Goal goal, const Visit& visit)
+  {
+    const int useful_rings = 3; // it moves the vertices of a face and those around them
+    const std::size_t most = number_of_exceptions(m_state.mesh);
+    std::vector<double> low;
+    for(std::size_t f = 0; f < m_angles.size(); ++f)
+      if(m_angles[f] < angle && can_rise(int(f)))
+        low.push_back(m_angles[f]);
+    if(low.size() > most)
+    {
+      std::nth_element(low.begin(), low.begin() + most, low.end());
+      angle = low[most] - negligible;
+      goal.searched = cosine(angle);
+    }
+    const auto is_left = [&](int f) {
+      return m_left[f].rings >= (std::min)(useful_rings, int(m_rings[f])) &&
+             std::abs(m_left[f].angle - m_angles[f]) < negligible;
+    };
+    find_below(angle);
+    if(std::all_of(m_low.begin(), m_low.end(), is_left))
+      return true;
+    m_credit -= cost_of_search * double(m_low.size()) / m_number_of_faces;
+    const bool goes_on = visit_wanted(goal, true, visit);
+    for(const int f : m_low)
+      m_left[f] = {m_angles[f], int(m_rings[f])};
+    return goes_on;
+  }
+
   template <typename Visit>
   bool visit_wanted(const Goal& goal, bool searches, const Visit& visit)
   {
+    m_credit -= double(m_wanted.list.size()) / m_number_of_faces;
     const bool goes_on = visit(m_wanted, goal, searches);
     m_touched.insert(m_touched.end(), m_wanted.list.begin(), m_wanted.list.end());
     measure(m_wanted.list);
@@ -349,6 +399,8 @@ private:
   double m_energy = 0;                // of all
   double m_minimum = 0;               // of all faces that may change
   double m_sum = 0;                   // of all
+  double m_credit = 0;
+  std::vector<Left> m_left; // per face
   Faces m_wanted;
   std::vector<int> m_low;
   std::vector<int> m_touched; // faces that are not as they were when saved

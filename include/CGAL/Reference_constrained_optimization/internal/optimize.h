@@ -9,12 +9,14 @@
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/feature_constraints.h>
 #include <CGAL/Reference_constrained_optimization/internal/feature_detection.h>
 #include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
+#include <CGAL/Reference_constrained_optimization/internal/mending.h>
 #include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference_lines.h>
@@ -63,6 +65,15 @@ inline std::vector<Vector_3> take_into(const Canonical_frame& frame, Mesh_copy& 
   for(Vector_3& p : copy.points)
     p = frame(p);
   return before;
+}
+
+// how far mesh and reference are apart, in the points that the drift guard looks at
+template <typename ConcurrencyTag>
+double drift_of(const Optimization_state& state, double bound)
+{
+  Drift_guard guard;
+  guard.initialize<ConcurrencyTag>(state, bound, true, Drift_barrier(1));
+  return guard.initial_drift();
 }
 
 // What `optimize()` does; throws Interrupted if it is cut short before the mesh is on the reference, and
@@ -172,12 +183,33 @@ void optimize(const FaceRange& range,
   if(std::isfinite(loop_parameters.drift_bound))
     framed_parameters.drift_bound = frame.length(loop_parameters.drift_bound);
   const auto finish = [&]() {
+    // what goes wrong at the end is mended where it is
+    Mending<ConcurrencyTag> mending(view);
+    if(!loop_parameters.accepts_all)
+      mending.run();
     Global_measure final = view.measure<ConcurrencyTag>(density);
-    // A gain that rounding to the frame made up is none. Defects may even have risen where the input came
-    // close to having more. The finishing stage may pay for an angle.
-    if(!view.has_moved_noticeably() || final.defects() > initial.defects() ||
-       (final.defects() == initial.defects() && final.energy > initial.energy &&
-        final.sharpest >= initial.sharpest))
+    // the finishing stage may pay for an angle
+    const auto has_risen = [&]() {
+      return final.defects() > initial.defects() ||
+             (final.defects() == initial.defects() && final.energy > initial.energy &&
+              final.sharpest >= initial.sharpest);
+    };
+    if(mending.has_mended() && std::isfinite(result.drift_bound))
+      result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
+    const auto has_drifted = [&]() {
+      return result.drift >
+             (std::max)(Drift_barrier::last_part * result.drift_bound, result.initial_drift);
+    };
+    // next to what has returned faces may be stretched
+    while(mending.has_mended() && (has_risen() || has_drifted()) && mending.grow())
+    {
+      mending.run();
+      final = view.measure<ConcurrencyTag>(density);
+      if(std::isfinite(result.drift_bound))
+        result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
+    }
+    // a gain that rounding to the frame made up is none
+    if(!view.has_moved_noticeably() || has_risen())
     {
       view.return_to_start();
       final = initial;

@@ -22,7 +22,13 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The faces with an element beyond `bad`, the worst first: of a large mesh a five-hundredth and some.
+// How many faces of a mesh may be worked on one by one: of a large one a five-hundredth and some.
+inline std::size_t number_of_exceptions(const Indexed_mesh& mesh)
+{
+  return 20 + std::size_t(mesh.number_of_faces()) / 500;
+}
+
+// The faces with an element beyond `bad`, the worst first, as far as they are exceptions.
 template <typename ConcurrencyTag, typename Density>
 std::vector<std::pair<double, int>>
 worst_faces(const Optimization_state& state, const Density& density, double bad)
@@ -31,8 +37,7 @@ worst_faces(const Optimization_state& state, const Density& density, double bad)
   faces.erase(std::remove_if(faces.begin(), faces.end(),
                              [&](const std::pair<double, int>& d) { return !(d.first > bad); }),
               faces.end());
-  const std::size_t most = 20 + std::size_t(state.mesh.number_of_faces()) / 500;
-  const std::size_t n = (std::min)(most, faces.size());
+  const std::size_t n = (std::min)(number_of_exceptions(state.mesh), faces.size());
   std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
                     std::greater<std::pair<double, int>>());
   faces.resize(n);
@@ -119,16 +124,21 @@ private:
     if(!visit(with_surroundings(faces), Moves::on_surface, goal))
       return false;
     Faces stuck;
+    // where many are as bad as the last of them a search has no exceptions to deal with
+    const bool are_all = faces.size() < number_of_exceptions(m_state.mesh);
+    const double common = are_all ? 0 : faces.back().first;
     for(const std::pair<double, int>& d : faces)
     {
       const double density = face_density(m_state, m_density, d.second);
       // what a search has left, and nothing has touched since, the next would leave, too
       const bool was_left = std::abs(density - m_found[d.second]) < 0.01 * density;
-      if(!(density > m_bad_for_search) || !(density > 0.8 * d.first) || was_left)
+      if(!(density > m_bad_for_search) || !(density > 0.8 * d.first) || was_left ||
+         !(density > common))
         continue;
       stuck.push_back(d);
       goal.searched = (std::min)(goal.searched, 0.99 * density);
     }
+    goal.searched = (std::max)(goal.searched, common);
     if(stuck.empty())
       return true;
     const bool goes_on = visit(with_surroundings(stuck), Moves::by_search, goal);
