@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -74,6 +75,7 @@ public:
 
 private:
   static constexpr double first_reach = 0.3, last_reach = 0.01; // in mean edges at a vertex
+  static constexpr int largest_valence = 64; // of a vertex that moves together with others
 
   // what a vertex looks at: its elements and the drift around it, and whether its faces and their edges
   // are turned or folded, or further from R than they may be
@@ -156,7 +158,8 @@ private:
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
           const int f = mesh.corner_face[mesh.vertex_corners[k]];
-          if(std::find(faces.begin(), faces.end(), f) == faces.end())
+          // at one vertex there is none twice
+          if(vertices.size() == 1 || std::find(faces.begin(), faces.end(), f) == faces.end())
             faces.push_back(f);
         }
     };
@@ -204,7 +207,8 @@ private:
       std::vector<int> free;
       for(const int v : element.vertices)
       {
-        if(may_move(patch, v))
+        // a large fan would be measured again for each of its elements
+        if(may_move(patch, v) && mesh.valence(v) <= largest_valence)
           free.push_back(v);
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
@@ -278,6 +282,8 @@ private:
 
   static bool are_neighbours(const Indexed_mesh& mesh, int v, int w)
   {
+    if(mesh.valence(w) < mesh.valence(v))
+      std::swap(v, w);
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     {
       const int c = mesh.vertex_corners[k];

@@ -107,7 +107,7 @@ void locate_sample(const Patch& patch,
   };
   if(sample.face >= 0)
     start(sample.face);
-  for(int k = 0; k < number_of_corners; ++k)
+  for(int k = 0; k < number_of_corners && sample.distance > unfelt; ++k)
     start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
 }
 
