@@ -26,6 +26,10 @@ namespace internal {
 typedef Eigen::Vector2d Vector_2;
 typedef Eigen::Vector3d Vector_3;
 
+// Fans of more faces than this are not looked at again for each of their faces: that would take time in
+// proportion to the square.
+constexpr int largest_small_valence = 64;
+
 // A polygon mesh in plain arrays. A corner is a face's vertex and at the same time the half-edge
 // from it to the face's next vertex; the corners of a face are consecutive.
 class Indexed_mesh

@@ -99,6 +99,14 @@ public:
     return (corner_point(f, 1) - corner_point(f, 0)).cross(corner_point(f, 2) - corner_point(f, 0));
   }
 
+  // whether rounding has a say in where the plane of a face is, or its square underflows
+  bool is_thin(int f) const
+  {
+    const double length = side_length(f, longest_side(f));
+    const double rounding = 1e-14, smallest = 1e-150;
+    return !(face_normal(f).norm() > (std::max)(rounding * length * length, smallest));
+  }
+
   // whether R is sharp at the edge at corner c
   bool is_crease(int c) const
   {
@@ -180,9 +188,9 @@ public:
   // where it finds p but for rounding, there is none.
   Surface_point closest_near(const Vector_3& p, int face, double rounding) const
   {
-    const int largest_valence = 64;
     const Foot foot = descend_to(
-      m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face, largest_valence);
+      m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face,
+      largest_small_valence);
     const double distance = std::sqrt(foot.squared_distance);
     const Surface_point known = {foot.position, foot.face, foot.barycentric};
     if(distance <= rounding)
@@ -412,14 +420,6 @@ private:
         sum += box_over_face(f);
     const double at_least = 16, pieces = 8;
     return (std::max)(at_least, sum / (pieces * m_mesh.number_of_faces()));
-  }
-
-  // whether rounding has a say in where the plane of a face is, or its square underflows
-  bool is_thin(int f) const
-  {
-    const double length = side_length(f, longest_side(f));
-    const double rounding = 1e-14, smallest = 1e-150;
-    return !(face_normal(f).norm() > (std::max)(rounding * length * length, smallest));
   }
 
   int longest_side(int f) const

@@ -75,7 +75,6 @@ public:
 
 private:
   static constexpr double first_reach = 0.3, last_reach = 0.01; // in mean edges at a vertex
-  static constexpr int largest_valence = 64; // of a vertex that moves together with others
 
   // what a vertex looks at: its elements and the drift around it, and whether its faces and their edges
   // are turned or folded, or further from R than they may be
@@ -207,8 +206,7 @@ private:
       std::vector<int> free;
       for(const int v : element.vertices)
       {
-        // a large fan would be measured again for each of its elements
-        if(may_move(patch, v) && mesh.valence(v) <= largest_valence)
+        if(may_move(patch, v) && mesh.valence(v) <= largest_small_valence)
           free.push_back(v);
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
