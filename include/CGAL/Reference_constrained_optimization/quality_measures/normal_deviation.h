@@ -25,7 +25,7 @@ struct Normal_deviation
 {
   double mean = 0;           ///< mean over the area.
   double maximum = 0;        ///< largest turn of a face.
-  double share_above_10 = 0; ///< part of the area, from 0 to 1, in faces turned by more than 10 degrees.
+  double share_above_10 = 0; ///< part of the area in faces turned by more than 10 degrees.
   double share_above_20 = 0; ///< the same for 20 degrees.
   double share_above_45 = 0; ///< the same for 45 degrees.
 };
@@ -50,8 +50,7 @@ inline double turn_at(const Reference_surface& reference,
   consider(closest.face);
   const double nothing = 1e-4; // the others need not be looked for then
   if(smallest > nothing)
-    for(const Surface_point& q :
-        reference.all_within(p, (closest.position - p).norm() + rounding))
+    for(const Surface_point& q : reference.all_within(p, (closest.position - p).norm() + rounding))
       consider(q.face);
   return smallest <= 180 ? smallest : angle_between(normal, reference.normal(closest));
 }
