@@ -50,7 +50,8 @@ inline Verdict verdict_on(const RCO::Result& result,
     const Measure &a = before[i], &b = after[i];
     if(b.role == Role::figure)
       continue;
-    const double rounding = 1e-9 * (std::max)(1., std::abs(a.value));
+    const double size = std::isfinite(a.value) ? std::abs(a.value) : 0;
+    const double rounding = 1e-9 * (std::max)(1., size);
     const double gain = b.gain(a), tolerance = (std::max)(b.tolerance, rounding);
     is_better = is_better || (b.role == Role::aim && gain > tolerance);
     if(gain >= -tolerance)

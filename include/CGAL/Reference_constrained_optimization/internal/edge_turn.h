@@ -36,8 +36,8 @@ inline std::vector<double> edge_turns(const Indexed_mesh& mesh, const std::vecto
   std::vector<double> turns(mesh.number_of_corners(), 0);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     if(mesh.opposite[c] > c)
-      turns[c] = turns[mesh.opposite[c]] = angle_between(
-        normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
+      turns[c] = turns[mesh.opposite[c]] =
+        angle_between(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
   return turns;
 }
 
