@@ -19,6 +19,8 @@ struct Figures
   CGAL::Reference_constrained_optimization::Angle_statistics angles;
   CGAL::Reference_constrained_optimization::Drift drift;
   CGAL::Reference_constrained_optimization::Orientation_defects defects;
+  CGAL::Reference_constrained_optimization::Normal_deviation turn;
+  CGAL::Reference_constrained_optimization::Feature_deviation features;
   double number_of_vertices = 0;
   double self_intersecting_pairs = 0;
   double off_reference = 0;         // largest distance of a vertex over the reference's diagonal
@@ -33,6 +35,8 @@ inline Figures measure(const Mesh& mesh, const Mesh& reference)
   f.angles = RCO::angle_statistics(mesh);
   f.drift = RCO::drift(mesh, reference);
   f.defects = RCO::orientation_defects(mesh, reference);
+  f.turn = RCO::normal_deviation(mesh, reference);
+  f.features = RCO::feature_deviation(reference, mesh);
   f.number_of_vertices = double(mesh.number_of_vertices());
   f.self_intersecting_pairs = double(RCO::number_of_self_intersecting_pairs(mesh));
   const CGAL::Bbox_3 box = CGAL::Polygon_mesh_processing::bbox(reference);

@@ -59,7 +59,9 @@ Exit code: 0, 1 if a check failed, 2 if a mesh or an option could not be used.
 
 Columns. theta: smallest angle per face, in degrees (min/mean/std). below 10..40: faces whose smallest
 angle is. drift: largest distance of samples from the mesh to the reference and back, and the larger
-root mean square, in mean edges of the reference. flips, folds: faces turned against the reference,
+root mean square, in mean edges of the reference. turn: by how much faces are turned against the
+reference, in degrees (mean over the area), and percent of the area in faces turned by more than 20 and
+45. kept, added: sharp edges that are left, and new ones, over the length that there was. flips, folds: faces turned against the reference,
 and edges folded by more than 120 degrees. crossings: pairs of faces that intersect. off R: largest
 distance of a vertex from the reference over the diagonal. bound: estimate of the largest minimum angle
 that the connectivity allows. run: how it ended; CGAL's safe angle smoothing may stop off the
@@ -180,6 +182,11 @@ Row make_row(const std::string& file,
   row.add("drift_mesh_to_reference", "drift, rms", known(f.drift.relative_mesh_to_reference()), 2);
   row.add("drift_reference_to_mesh", "drift, rms", known(f.drift.relative_reference_to_mesh()), 2);
   row.add("drift_rms", "drift, rms", known(f.drift.relative_root_mean_square()), 3);
+  row.add("turn_mean", "turn, >20, >45 %", known(f.turn.mean), 2);
+  row.add("turned_above_20", "turn, >20, >45 %", known(100 * f.turn.share_above_20), 2);
+  row.add("turned_above_45", "turn, >20, >45 %", known(100 * f.turn.share_above_45), 2);
+  row.add("sharp_edges_kept", "kept, added", known(f.features.kept), 3);
+  row.add("sharp_edges_added", "kept, added", known(f.features.added), 3);
   row.add("flips", "flips", known(double(f.defects.number_of_flips)));
   row.add("folds", "folds", known(double(f.defects.number_of_fold_edges)));
   row.add("self_intersecting_pairs", "crossings", known(f.self_intersecting_pairs));

@@ -11,7 +11,10 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <functional>
 
 namespace RCO = CGAL::Reference_constrained_optimization;
 using namespace rco_test;
@@ -175,6 +178,162 @@ void test_orientation()
       0u);
 }
 
+// Where sheets that are turned against each other meet, a vertex is on the one that faces as its faces do,
+// though the other may be more nearly parallel: waves that cross a plane, and a mesh of their chords.
+void test_sheets_turned_against_each_other()
+{
+  const Scope scope("sheets turned against each other");
+  const auto waves = [](int nx, int ny) {
+    Shape shape = plane_grid(nx, ny);
+    for(Vector_3& p : shape.points)
+      p = Vector_3(4 * p.x(), p.y(), std::sin(4 * pi * p.x()) / pi);
+    return shape;
+  };
+  Shape plane = turned_round(plane_grid(5, 5));
+  for(Vector_3& p : plane.points)
+    p.x() *= 4;
+  const Mesh surface = make_mesh<Mesh>(joined(waves(64, 7), plane, Vector_3::Zero()));
+  RCO_CHECK_EQUAL(RCO::orientation_defects(make_mesh<Mesh>(waves(4, 5)), surface).total(), 0u);
+}
+
+Shape transformed(Shape shape, const std::function<Vector_3(const Vector_3&)>& map)
+{
+  for(Vector_3& p : shape.points)
+    p = map(p);
+  return shape;
+}
+
+void test_normal_deviation()
+{
+  const Scope scope("normal deviation");
+  for(const Shape& shape :
+      {icosphere(3), cube(4), cube(5, true), turned_round(cube(3)), closed_cylinder(200, 3, 1, 2)})
+  {
+    const Mesh mesh = make_mesh<Mesh>(shape);
+    RCO_CHECK_NEAR(RCO::normal_deviation(mesh, mesh).maximum, 0, 1e-5);
+    RCO_CHECK_EQUAL(RCO::normal_deviation(mesh, mesh).share_above_10, 0.);
+  }
+  // a plane, and another of which a third is turned by 50 degrees and two thirds by 15
+  const auto bend = [](const Vector_3& p) {
+    const auto direction = [](double degrees) {
+      return Vector_3(std::cos(degrees * pi / 180), 0, std::sin(degrees * pi / 180));
+    };
+    return Vector_3(Vector_3(0.5, p.y(), 0) + (std::min)(p.x() - 0.5, 0.) * direction(-50) +
+                    (std::max)(p.x() - 0.5, 0.) * direction(15));
+  };
+  Shape halves = plane_grid(8, 4);
+  for(Vector_3& p : halves.points)
+    p.x() = p.x() < 0.5 ? 0.25 + 0.5 * p.x() : p.x();
+  const Mesh bent = make_mesh<Mesh>(transformed(halves, bend));
+  Shape ground = plane_grid(3, 3, 4);
+  for(Vector_3& p : ground.points)
+    p -= Vector_3(1.7, 1.7, 0);
+  for(const Shape& shape : {ground, turned_round(ground)})
+  {
+    const RCO::Normal_deviation d = RCO::normal_deviation(bent, make_mesh<Mesh>(shape));
+    RCO_CHECK_NEAR(d.maximum, 50, 1e-6);
+    RCO_CHECK_NEAR(d.mean, 50. / 3 + 15. * 2 / 3, 1e-6);
+    RCO_CHECK_NEAR(d.share_above_10, 1, 1e-12);
+    RCO_CHECK_NEAR(d.share_above_20, 1. / 3, 1e-12);
+    RCO_CHECK_NEAR(d.share_above_45, 1. / 3, 1e-12);
+  }
+  // a face without area has no normal
+  Shape with = ground;
+  const int a = with.add(0.1, 0.2, 0), b = with.add(0.4, 0.2, 0), c = with.add(0.9, 0.2, 0);
+  with.triangle(a, b, c);
+  RCO_CHECK_NEAR(RCO::normal_deviation(bent, make_mesh<Mesh>(with)).mean, 50. / 3 + 10, 1e-6);
+  RCO_CHECK_NEAR(RCO::normal_deviation(make_mesh<Mesh>(with), make_mesh<Mesh>(with)).maximum, 0,
+                 1e-5);
+}
+
+void test_feature_deviation()
+{
+  const Scope scope("feature deviation");
+  // the same edges, whatever the connectivity
+  for(const Shape& shape : {cube(4), cube(10), cube(7, true)})
+  {
+    const RCO::Feature_deviation d =
+      RCO::feature_deviation(make_mesh<Mesh>(cube(4)), make_mesh<Mesh>(shape));
+    RCO_CHECK_NEAR(d.kept, 1, 1e-12);
+    RCO_CHECK_NEAR(d.added, 0, 1e-12);
+    RCO_CHECK_NEAR(d.length_before, 12, 1e-9);
+    RCO_CHECK_NEAR(d.length_after, 12, 1e-9);
+    RCO_CHECK_NEAR(d.before_to_after, 0, 1e-12);
+    RCO_CHECK_NEAR(d.after_to_before, 0, 1e-12);
+  }
+  // Without the edges parallel to the z-axis, whose vertices go inside: two of 45 degrees each instead
+  // of each of them, a tenth away, from top to bottom.
+  const auto bevel = [](const Vector_3& p) {
+    const auto is_end = [](double x) { return x == 0 || x == 1; };
+    if(!is_end(p.x()) || !is_end(p.y()))
+      return p;
+    return Vector_3(p.x() + 0.05 * (1 - 2 * p.x()), p.y() + 0.05 * (1 - 2 * p.y()), p.z());
+  };
+  const RCO::Feature_deviation beveled = RCO::feature_deviation(
+    make_mesh<Mesh>(cube(10)), make_mesh<Mesh>(transformed(cube(10), bevel)));
+  RCO_CHECK_LESS(beveled.kept, 0.68);
+  RCO_CHECK_LESS(0.5, beveled.kept); // two thirds, but for the corners
+  RCO_CHECK_LESS(0.6, beveled.added);
+  RCO_CHECK_LESS(beveled.added, 0.75);
+  RCO_CHECK_NEAR(beveled.before_to_after, 0.05 * std::sqrt(2.), 0.04);
+  // no feature before: what is added is told in diagonals
+  const Mesh flat = make_mesh<Mesh>(plane_grid(8, 8)), smooth = make_mesh<Mesh>(icosphere(3));
+  const Mesh folded = make_mesh<Mesh>(transformed(plane_grid(8, 8), [](const Vector_3& p) {
+    return Vector_3(p.x(), p.y(), (std::max)(0., p.x() - 0.5));
+  }));
+  const RCO::Feature_deviation ridge = RCO::feature_deviation(flat, folded);
+  RCO_CHECK_EQUAL(ridge.kept, 1.);
+  RCO_CHECK_NEAR(ridge.added, std::sqrt(0.5), 1e-12);
+  RCO_CHECK(std::isinf(ridge.after_to_before));
+  const RCO::Feature_deviation lost = RCO::feature_deviation(folded, flat);
+  RCO_CHECK_EQUAL(lost.kept, 0.);
+  RCO_CHECK_EQUAL(lost.added, 0.);
+  RCO_CHECK(std::isinf(lost.before_to_after));
+  const RCO::Feature_deviation none = RCO::feature_deviation(smooth, smooth);
+  RCO_CHECK_EQUAL(none.kept, 1.);
+  RCO_CHECK_EQUAL(none.added, 0.);
+}
+
+// a component whose vertices are all in one place is a point of the surface
+void test_collapsed_component()
+{
+  const Scope scope("collapsed component");
+  Shape shape = plane_grid(4, 4);
+  for(int i = 0; i < 4; ++i)
+    shape.add(0.3, 0.3, 5);
+  const int first = int(shape.points.size()) - 4;
+  shape.triangle(first, first + 1, first + 2);
+  shape.triangle(first, first + 2, first + 3);
+  const Mesh mesh = make_mesh<Mesh>(shape);
+  RCO_CHECK_NEAR(RCO::drift(mesh, mesh).maximum(), 0, 1e-12);
+  RCO_CHECK_NEAR(RCO::distance_to_reference(mesh, mesh).maximum, 0, 1e-12);
+  RCO_CHECK_NEAR(RCO::drift(mesh, make_mesh<Mesh>(plane_grid(4, 4))).mesh_to_reference.maximum, 5,
+                 1e-12);
+}
+
+// A cylinder whose ends are fans of thousands of faces: time in proportion to the size, where that in
+// proportion to its square would be 25 times as long.
+void test_large_fans()
+{
+  const Scope scope("large fans");
+  const auto time = [](int columns) {
+    const Mesh mesh = make_mesh<Mesh>(closed_cylinder(columns, 1, 1, 1));
+    const Mesh moved =
+      make_mesh<Mesh>(transformed(closed_cylinder(columns, 1, 1, 1), [](const Vector_3& p) {
+        return Vector_3(p.x() + (p.norm() < 0.5 ? 0.02 : 0.), p.y(), p.z());
+      }));
+    const std::clock_t start = std::clock();
+    RCO_CHECK_NEAR(RCO::drift(moved, mesh).maximum(), 0, 1e-9);
+    RCO_CHECK_EQUAL(RCO::orientation_defects(moved, mesh).total(), 0u);
+    RCO_CHECK_NEAR(RCO::distance_to_reference(moved, mesh).maximum, 0, 1e-9);
+    RCO_CHECK_NEAR(RCO::normal_deviation(moved, mesh).mean, 0, 1e-3);
+    RCO_CHECK_NEAR(RCO::feature_deviation(mesh, moved).kept, 1, 1e-9);
+    return double(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  const double small = time(1000), large = time(5000);
+  RCO_CHECK_LESS(large, 18 * small);
+}
+
 void test_quads()
 {
   const Shape squares = plane_grid(5, 5, 2, true);
@@ -245,6 +404,11 @@ int main()
   test_drift();
   test_distance_beside_needle();
   test_orientation();
+  test_sheets_turned_against_each_other();
+  test_normal_deviation();
+  test_feature_deviation();
+  test_collapsed_component();
+  test_large_fans();
   test_quads();
   test_estimate_and_intersections();
   return report();

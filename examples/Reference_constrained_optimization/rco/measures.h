@@ -11,75 +11,162 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures/angles.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/distortion.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/quads.h>
 
 #include <string>
 #include <vector>
 
+// what a measure has to do with the verdict on a run
+enum class Role {
+  figure,    // nothing
+  condition, // it is told if it got worse
+  aim        // what the energy is about: the mesh is improved if one of these is better
+};
+
 struct Measure
 {
   std::string key, label; // for programs and for people
   int digits;
   double value;
+  Role role = Role::figure;
+  bool is_better_if_larger = false;
+  double tolerance = 0; // what is no change
+
+  double gain(const Measure& before) const
+  {
+    return is_better_if_larger ? value - before.value : before.value - value;
+  }
 };
 
-// The reference is null if it is the mesh itself: nothing has drifted then.
-inline std::vector<Measure>
-measure(const Mesh& mesh, const Mesh* other_reference, const Mesh& source, Application application)
+// collects them
+class Measures
+{
+  std::vector<Measure> m_all;
+
+public:
+  void figure(const char* key, const char* label, int digits, double value)
+  {
+    m_all.push_back({key, label, digits, value});
+  }
+  void smaller_is_better(Role role, const char* key, const char* label, int digits, double value)
+  {
+    m_all.push_back({key, label, digits, value, role, false});
+  }
+  void larger_is_better(Role role, const char* key, const char* label, int digits, double value)
+  {
+    m_all.push_back({key, label, digits, value, role, true});
+  }
+  void let_pass(double tolerance) { m_all.back().tolerance = tolerance; }
+  const std::vector<Measure>& all() const { return m_all; }
+};
+
+inline void add_angles(Measures& m, const Mesh& mesh)
+{
+  const RCO::Angle_statistics a = RCO::angle_statistics(mesh);
+  m.larger_is_better(Role::aim, "minimum_angle", "smallest angle of a face (degrees), minimum", 2,
+                     a.minimum);
+  m.larger_is_better(Role::aim, "mean_minimum_angle", "  mean", 2, a.mean);
+  m.figure("standard_deviation_of_minimum_angle", "  standard deviation", 2, a.standard_deviation);
+  m.smaller_is_better(Role::aim, "faces_below_10", "  faces below 10", 0,
+                      double(a.number_below_10));
+  m.smaller_is_better(Role::aim, "faces_below_20", "  faces below 20", 0,
+                      double(a.number_below_20));
+  m.smaller_is_better(Role::aim, "faces_below_30", "  faces below 30", 0,
+                      double(a.number_below_30));
+}
+
+inline void add_quads(Measures& m, const Mesh& mesh, const Mesh& reference, bool uses_angle_energy)
+{
+  const RCO::Edge_statistics e = RCO::edge_statistics(mesh);
+  const Role edges = uses_angle_energy ? Role::figure : Role::condition;
+  m.larger_is_better(edges, "minimum_edge", "edge length over mean, minimum", 3, e.minimum);
+  m.smaller_is_better(edges, "maximum_edge", "  maximum", 3, e.maximum);
+  m.smaller_is_better(uses_angle_energy ? Role::figure : Role::aim, "standard_deviation_of_edge",
+                      "  standard deviation", 3, e.standard_deviation);
+  const RCO::Corner_angle_statistics a = RCO::corner_angle_statistics(mesh);
+  m.larger_is_better(Role::condition, "minimum_corner_angle", "corner angle (degrees), minimum", 2,
+                     a.minimum);
+  m.smaller_is_better(Role::condition, "maximum_corner_angle", "  maximum", 2, a.maximum);
+  m.smaller_is_better(Role::aim, "standard_deviation_of_corner_angle", "  standard deviation", 2,
+                      a.standard_deviation);
+  const RCO::Planarity p = RCO::planarity(mesh);
+  m.figure("maximum_planarity", "planarity (0: planar), maximum", 4, p.maximum);
+  m.figure("mean_planarity", "  mean", 4, p.mean);
+  m.smaller_is_better(Role::condition, "nonconvex_quads", "non-convex quads", 0,
+                      double(RCO::number_of_nonconvex_quads(mesh, reference)));
+}
+
+inline void add_distortion(Measures& m, const Mesh& mesh, const Mesh& reference, const Mesh& source)
+{
+  const auto none = CGAL::parameters::default_values();
+  // a map that misses a part of the reference is not let off for it
+  const double area = CGAL::to_double(CGAL::Polygon_mesh_processing::area(reference));
+  const RCO::Distortion_statistics d = RCO::distortion_statistics(source, mesh, none, none, area);
+  m.smaller_is_better(Role::aim, "mean_distortion", "distortion (2: isometric), mean", 3, d.mean);
+  m.figure("median_distortion", "  median", 3, d.median);
+  m.figure("percentile_99_of_distortion", "  99 %", 3, d.percentile_99);
+  m.smaller_is_better(Role::condition, "maximum_distortion", "  maximum", 2, d.maximum);
+}
+
+// The reference is null if it is the mesh itself: that is as it was.
+inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
+{
+  const bool is_itself = reference == nullptr;
+  const RCO::Drift drift = is_itself ? RCO::Drift() : RCO::drift(mesh, *reference);
+  const double unit = is_itself ? 1 : drift.reference_mean_edge_length;
+  m.figure("mesh_to_reference", "drift (mean edges of the reference), of the mesh", 3,
+           drift.mesh_to_reference.maximum / unit);
+  m.figure("reference_to_mesh", "  of the reference", 3, drift.reference_to_mesh.maximum / unit);
+  m.figure("root_mean_square_drift", "  root mean square", 3, drift.root_mean_square() / unit);
+  const RCO::Normal_deviation n =
+    is_itself ? RCO::Normal_deviation() : RCO::normal_deviation(mesh, *reference);
+  m.figure("mean_normal_deviation", "turn of faces against it (degrees), mean", 2, n.mean);
+  m.figure("maximum_normal_deviation", "  maximum", 2, n.maximum);
+  m.figure("area_turned_above_10", "  part of the area above 10", 4, n.share_above_10);
+  m.figure("area_turned_above_20", "  part of the area above 20", 4, n.share_above_20);
+  m.figure("area_turned_above_45", "  part of the area above 45", 4, n.share_above_45);
+  const RCO::Feature_deviation f =
+    is_itself ? RCO::Feature_deviation() : RCO::feature_deviation(*reference, mesh);
+  const double small_part = 0.1; // scans have short pieces of such edges anywhere
+  m.larger_is_better(Role::condition, "sharp_edges_kept", "sharp edges, part kept", 3, f.kept);
+  m.let_pass(small_part);
+  m.smaller_is_better(Role::condition, "sharp_edges_added", "  added", 3, f.added);
+  m.let_pass(small_part);
+}
+
+// Measures a mesh against its reference, null if that is the mesh itself; the source serves maps only.
+// What a verdict is about does not take long; what tells of the shape may be left out.
+inline std::vector<Measure> measure(const Mesh& mesh,
+                                    const Mesh* other_reference,
+                                    const Mesh& source,
+                                    const Options& options,
+                                    bool has_shape)
 {
   const Mesh& reference = other_reference != nullptr ? *other_reference : mesh;
-  std::vector<Measure> measures;
-  const auto add = [&](const char* key, const char* label, int digits, double value) {
-    measures.push_back({key, label, digits, value});
-  };
-  if(application == Application::angle)
+  Measures m;
+  switch(options.application)
   {
-    const RCO::Angle_statistics a = RCO::angle_statistics(mesh);
-    add("minimum_angle", "smallest angle of a face (degrees), minimum", 2, a.minimum);
-    add("mean_minimum_angle", "  mean", 2, a.mean);
-    add("standard_deviation_of_minimum_angle", "  standard deviation", 2, a.standard_deviation);
-    add("faces_below_10", "  faces below 10", 0, double(a.number_below_10));
-    add("faces_below_20", "  faces below 20", 0, double(a.number_below_20));
-    add("faces_below_30", "  faces below 30", 0, double(a.number_below_30));
-  }
-  if(application == Application::quad)
-  {
-    const RCO::Edge_statistics e = RCO::edge_statistics(mesh);
-    add("minimum_edge", "edge length over mean, minimum", 3, e.minimum);
-    add("maximum_edge", "  maximum", 3, e.maximum);
-    add("standard_deviation_of_edge", "  standard deviation", 3, e.standard_deviation);
-    const RCO::Corner_angle_statistics a = RCO::corner_angle_statistics(mesh);
-    add("minimum_corner_angle", "corner angle (degrees), minimum", 2, a.minimum);
-    add("maximum_corner_angle", "  maximum", 2, a.maximum);
-    add("standard_deviation_of_corner_angle", "  standard deviation", 2, a.standard_deviation);
-    const RCO::Planarity p = RCO::planarity(mesh);
-    add("maximum_planarity", "planarity (0: planar), maximum", 4, p.maximum);
-    add("mean_planarity", "  mean", 4, p.mean);
-    add("nonconvex_quads", "non-convex quads", 0,
-        double(RCO::number_of_nonconvex_quads(mesh, reference)));
-  }
-  if(application == Application::map)
-  {
-    const auto none = CGAL::parameters::default_values();
-    // a map that misses a part of the reference is not let off for it
-    const double area = CGAL::to_double(CGAL::Polygon_mesh_processing::area(reference));
-    const RCO::Distortion_statistics d = RCO::distortion_statistics(source, mesh, none, none, area);
-    add("mean_distortion", "distortion (2: isometric), mean", 3, d.mean);
-    add("median_distortion", "  median", 3, d.median);
-    add("percentile_99_of_distortion", "  99 %", 3, d.percentile_99);
-    add("maximum_distortion", "  maximum", 2, d.maximum);
+  case Application::angle:
+    add_angles(m, mesh);
+    break;
+  case Application::quad:
+    add_quads(m, mesh, reference, options.uses_angle_energy);
+    break;
+  case Application::map:
+    add_distortion(m, mesh, reference, source);
+    break;
   }
   const RCO::Orientation_defects defects = RCO::orientation_defects(mesh, reference);
-  add("flipped_faces", "flipped faces", 0, double(defects.number_of_flips));
-  add("folded_edges", "folded edges", 0, double(defects.number_of_fold_edges));
-  const RCO::Drift drift = other_reference != nullptr ? RCO::drift(mesh, reference) : RCO::Drift();
-  const double unit = other_reference != nullptr ? drift.reference_mean_edge_length : 1;
-  add("mesh_to_reference", "drift (mean edges of the reference), of the mesh", 3,
-      drift.mesh_to_reference.maximum / unit);
-  add("reference_to_mesh", "  of the reference", 3, drift.reference_to_mesh.maximum / unit);
-  add("root_mean_square_drift", "  root mean square", 3, drift.root_mean_square() / unit);
-  return measures;
+  m.smaller_is_better(Role::condition, "flipped_faces", "flipped faces", 0,
+                      double(defects.number_of_flips));
+  m.smaller_is_better(Role::condition, "folded_edges", "folded edges", 0,
+                      double(defects.number_of_fold_edges));
+  if(has_shape)
+    add_shape(m, mesh, other_reference);
+  return m.all();
 }
 
 #endif // RCO_PROGRAM_MEASURES_H

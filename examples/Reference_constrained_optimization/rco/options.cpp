@@ -30,16 +30,18 @@ Files are OFF, OBJ, PLY or STL; the ending of the name tells which.
 )";
 
 const char* const exit_codes = R"(Exit codes:
-   0  improved; help and version, too
+   0  improved: a measure that the energy is about is better (what got worse is said in the
+      same line); help and version, too
    1  something failed that should not: a bug, or no memory
    2  bad usage: the command line makes no sense
    3  unreadable file: not there, or no polygon mesh, or bad landmarks
    4  unwritable file: there is no such folder, the ending is unknown, the disk is full
    5  refused input: read, but not usable (the message names the face or the vertex)
   10  nothing to do: no vertex may move, or none finds a better place (OUT is written)
-  11  out of time before anything could be improved (OUT is written)
+  11  out of time before anything was improved (OUT is written)
   12  interrupted by Ctrl-C or SIGTERM: what was reached by then is in OUT; a second
-      Ctrl-C ends the program at once
+      Ctrl-C ends the program at once, and so does one while it measures
+  14  not better: no measure that the energy is about is, and something is worse (OUT is written)
 )";
 
 const char* const angle_usage = R"(Usage: rco angle IN [-o OUT] [options]

@@ -16,7 +16,8 @@ enum class Outcome {
   refused_input = 5,
   nothing_to_do = 10,
   out_of_time = 11,
-  interrupted = 12
+  interrupted = 12,
+  not_better = 14 // 13 is kept for maps that are of no use
 };
 
 inline const char* name(Outcome outcome)
@@ -41,6 +42,8 @@ inline const char* name(Outcome outcome)
     return "out of time";
   case Outcome::interrupted:
     return "interrupted";
+  case Outcome::not_better:
+    return "not better";
   }
   return "";
 }

@@ -9,12 +9,15 @@
 #include "options.h"
 #include "outcome.h"
 #include "report.h"
+#include "run_unless_interrupted.h"
+#include "verdict.h"
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -61,13 +64,17 @@ Mesh read_initial_mesh(const Options& options, const Mesh& source, const Mesh& r
   return initial;
 }
 
-Outcome outcome_of(const RCO::Result& result)
+// Ends the program while measuring goes on; the result is written.
+[[noreturn]] void end_unmeasured(const Options& options)
 {
-  if(result.status == RCO::Status::interrupted)
-    return Outcome::interrupted;
-  if(result.number_of_accepted_patches > 0)
-    return Outcome::improved;
-  return result.status == RCO::Status::time_limit ? Outcome::out_of_time : Outcome::nothing_to_do;
+  const std::string message =
+    "interrupted while measuring" + (options.output.empty() ? "" : "; result: " + options.output);
+  if(options.prints_json)
+    print_json(std::cout, message, Outcome::interrupted);
+  else if(!options.is_quiet)
+    std::cout << message << std::endl;
+  std::cout.flush();
+  std::_Exit(int(Outcome::interrupted));
 }
 
 Outcome run(const Options& options)
@@ -91,17 +98,22 @@ Outcome run(const Options& options)
     if(!options.output.empty())
       write_mesh(options.output, mesh);
   }
-  const Outcome outcome = outcome_of(report.result);
-  if(options.is_quiet && !options.prints_json)
-    return outcome;
-  report.before =
-    measure(initial, is_own_reference ? nullptr : &reference, input, options.application);
-  report.after = measure(mesh, &reference, input, options.application);
+  if(report.result.status == RCO::Status::interrupted)
+    interruption_is_wanted = 0; // it has had its effect
+  const bool prints = options.prints_json || !options.is_quiet;
+  const bool is_measured = run_unless_interrupted([&]() {
+    report.before =
+      measure(initial, is_own_reference ? nullptr : &reference, input, options, prints);
+    report.after = measure(mesh, &reference, input, options, prints);
+  });
+  if(!is_measured)
+    end_unmeasured(options);
+  report.verdict = verdict_on(report.result, report.before, report.after);
   if(options.prints_json)
-    print_json(std::cout, options, report, outcome);
-  else
-    print_table(std::cout, options, report, outcome);
-  return outcome;
+    print_json(std::cout, options, report);
+  else if(prints)
+    print_table(std::cout, options, report);
+  return report.verdict.outcome;
 }
 
 // what could not be read is not known to ask for it

@@ -6,6 +6,7 @@
 #include "measures.h"
 #include "options.h"
 #include "outcome.h"
+#include "verdict.h"
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 
@@ -22,6 +23,7 @@ struct Report
   std::size_t number_of_vertices = 0, number_of_faces = 0;
   std::vector<Measure> before, after;
   RCO::Result result;
+  Verdict verdict;
 };
 
 inline const char* name(RCO::Status status)
@@ -83,8 +85,15 @@ inline std::string json_outcome(Outcome outcome)
          ",\n  \"exit_code\": " + std::to_string(int(outcome));
 }
 
-inline void
-print_json(std::ostream& out, const Options& options, const Report& report, Outcome outcome)
+inline std::string json_list(const std::vector<std::string>& texts)
+{
+  std::string list;
+  for(const std::string& text : texts)
+    list += (list.empty() ? "" : ", ") + json_text(text);
+  return "[" + list + "]";
+}
+
+inline void print_json(std::ostream& out, const Options& options, const Report& report)
 {
   const RCO::Result& r = report.result;
   const auto file = [](const std::string& name) { return name.empty() ? "null" : json_text(name); };
@@ -92,7 +101,9 @@ print_json(std::ostream& out, const Options& options, const Report& report, Outc
       << ",\n  \"input\": " << json_text(options.input)
       << ",\n  \"reference\": " << file(options.reference)
       << ",\n  \"output\": " << file(options.output) << ",\n"
-      << json_outcome(outcome) << ",\n  \"status\": " << json_text(name(r.status))
+      << json_outcome(report.verdict.outcome)
+      << ",\n  \"worse\": " << json_list(report.verdict.worse_keys)
+      << ",\n  \"status\": " << json_text(name(r.status))
       << ",\n  \"number_of_vertices\": " << report.number_of_vertices
       << ",\n  \"number_of_faces\": " << report.number_of_faces
       << ",\n  \"number_of_free_vertices\": " << r.number_of_free_vertices
@@ -112,8 +123,16 @@ inline void print_json(std::ostream& out, const std::string& error, Outcome outc
       << json_outcome(outcome) << ",\n  \"error\": " << json_text(error) << "\n}" << std::endl;
 }
 
-inline void
-print_table(std::ostream& out, const Options& options, const Report& report, Outcome outcome)
+// "improved, but: flipped faces 0 -> 2"
+inline std::string text_of(const Verdict& verdict)
+{
+  std::string text = name(verdict.outcome);
+  if(!verdict.worse.empty())
+    text += (verdict.outcome == Outcome::improved ? ", but: " : ": ") + verdict.worse;
+  return text;
+}
+
+inline void print_table(std::ostream& out, const Options& options, const Report& report)
 {
   const int label = 50, column = 12;
   const RCO::Result& r = report.result;
@@ -126,7 +145,7 @@ print_table(std::ostream& out, const Options& options, const Report& report, Out
     out << std::setprecision(a.digits) << std::left << std::setw(label) << a.label << std::right
         << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
   }
-  out << std::setprecision(2) << name(outcome) << " (" << name(r.status)
+  out << std::setprecision(2) << text_of(report.verdict) << " (" << name(r.status)
       << "): " << r.number_of_iterations << " iterations, " << r.running_time << " seconds";
   if(!options.output.empty())
     out << "; result: " << options.output;

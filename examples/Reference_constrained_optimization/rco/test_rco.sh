@@ -166,7 +166,14 @@ same_faces flat.off map.off
 expect 0 map flat.off reference.off --initial triangles.off -o map.ply --use-equal-areas no --json
 json_less 'after;mean_distortion' 'before;mean_distortion'
 make_grid 20 3 0.0 0.28 >near.off
-expect 0 map near.off reference.off -o map.obj --relax-constraints
+# onto the reference it gets less like the source
+expect 14 map near.off reference.off -o map.obj --relax-constraints
+grep -q '^not better: mean distortion .* -> .*result: map.obj' out || fail "a map that is worse is not called so"
+expect 14 map near.off reference.off --relax-constraints --quiet
+expect 14 map near.off reference.off --relax-constraints --json
+json_is outcome 'not better'
+json_is exit_code 14
+json_is 'worse;0' mean_distortion
 expect 5 map flat.off reference.off --initial reference.off
 expect 3 map flat.off reference.off --landmarks nowhere.txt
 for line in '0' '0 0 0' 'a 0' '441 0' '0 324' '-1 0'; do
@@ -177,9 +184,18 @@ done
 printf '0 0\n20 17\n' >two.txt
 expect 5 map flat.off reference.off --landmarks two.txt
 
+# ---- the verdict: what got worse is told, and such a mesh alone is not called better
+expect 0 angle triangles.off -o verdict.off
+grep -q '^improved' out || fail "no verdict"
+for key in mean_normal_deviation area_turned_above_45 sharp_edges_kept sharp_edges_added; do
+  expect 0 angle triangles.off --number-of-iterations 1 --json
+  json_is "before;$key" "$([ "$key" = sharp_edges_kept ] && echo 1 || echo 0)"
+  [ "$has_json" = 0 ] || [ -n "$(json "after;$key")" ] || fail "no $key"
+done
 # ---- nothing to do, out of time
 expect 10 angle triangles.off --sharp-edges 0 -o nothing.off --json
 json_is outcome 'nothing to do'
+json_is worse '[]'
 same_faces triangles.off nothing.off
 expect 11 angle triangles.off --maximum-running-time 1e-9 --json
 json_is status 'time limit'
@@ -262,12 +278,12 @@ for text in "$readme" "$manual"; do
   grep '^rco ' "$text" >>lines.txt
   [ "$(grep -c '^rco ' "$text")" -ge 3 ] || fail "too few lines in $text"
 done
-# those that make a file come before those that read it, and leave nothing to do then
+# those that make a file come before those that read it, and leave nothing to do then, or nothing to gain
 while read -r _ words; do
   # shellcheck disable=SC2086
   "$rco" $words >out 2>err </dev/null
   code=$?
-  [ "$code" = 0 ] || [ "$code" = 10 ] || fail "rco $words: exit code $code: $(cat err)"
+  [ "$code" = 0 ] || [ "$code" = 10 ] || [ "$code" = 14 ] || fail "rco $words: exit code $code: $(cat err)"
 done <lines.txt
 cd .. || exit 1
 
@@ -289,6 +305,26 @@ set +m
 grep -q '^interrupted' out || fail "no word about the interruption"
 same_faces large.off interrupted.off
 cmp -s large.off interrupted.off && fail "nothing was saved after Ctrl-C"
+
+# ---- and where measuring takes long, Ctrl-C ends that: the result is there already
+set -m
+"$rco" angle large.off -o measured.off --number-of-iterations 1 >out 2>err </dev/null &
+pid=$!
+size=0
+for((i = 0; i < 3000; ++i)); do
+  previous=$size
+  size=$({ wc -c <measured.off; } 2>/dev/null || echo 0)
+  [ "$size" -gt 0 ] && [ "$size" = "$previous" ] && break
+  kill -0 "$pid" 2>/dev/null || break
+  sleep 0.02
+done
+kill -INT "$pid" 2>/dev/null
+wait "$pid"
+code=$?
+set +m
+[ "$code" = 12 ] || fail "exit code $code after Ctrl-C while measuring instead of 12: $(cat out err)"
+grep -q '^interrupted while measuring; result: measured.off' out || fail "no word about the interruption"
+same_faces large.off measured.off
 
 if [ "$failures" -ne 0 ]; then
   echo "$failures failures"

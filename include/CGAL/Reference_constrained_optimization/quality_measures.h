@@ -17,7 +17,9 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures/distance_to_reference.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/distortion.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/minimum_angle_estimate.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/quads.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/self_intersections.h>

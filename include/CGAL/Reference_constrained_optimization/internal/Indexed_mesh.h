@@ -26,6 +26,10 @@ namespace internal {
 typedef Eigen::Vector2d Vector_2;
 typedef Eigen::Vector3d Vector_3;
 
+// Fans of more faces than this are not looked at again for each of their faces: that would take time in
+// proportion to the square.
+constexpr int largest_small_valence = 64;
+
 // A polygon mesh in plain arrays. A corner is a face's vertex and at the same time the half-edge
 // from it to the face's next vertex; the corners of a face are consecutive.
 class Indexed_mesh
@@ -86,11 +90,14 @@ public:
   int source(int c) const { return corner_vertex[c]; }
   int target(int c) const { return corner_vertex[next(c)]; }
 
-  bool is_isolated(int v) const { return vertex_begin[v] == vertex_begin[v + 1]; }
+  int valence(int v) const { return vertex_begin[v + 1] - vertex_begin[v]; } // faces at a vertex
+  bool is_isolated(int v) const { return valence(v) == 0; }
   // a face with the vertex, which must have one, and with both of an edge, -1 if there is none
   int face_at(int v) const { return corner_face[vertex_corners[vertex_begin[v]]]; }
   int face_at(int v, int w) const
   {
+    if(valence(w) < valence(v))
+      std::swap(v, w);
     for(int k = vertex_begin[v]; k < vertex_begin[v + 1]; ++k)
     {
       const int c = vertex_corners[k];
@@ -127,7 +134,7 @@ private:
   // whether the faces at a vertex form one fan
   bool is_fan(int v) const
   {
-    const int degree = vertex_begin[v + 1] - vertex_begin[v];
+    const int degree = valence(v);
     if(degree == 0)
       return true;
     const int start = vertex_corners[vertex_begin[v]];
@@ -177,15 +184,22 @@ private:
     opposite.assign(n, -1);
     const int refused = find_first<ConcurrencyTag>(n, [&](int c) {
       const int s = source(c), t = targets[c];
+      // an edge is searched for at the end that has fewer, or large fans would take long
+      const bool looks_at_target = valence(t) < valence(s);
+      const int v = looks_at_target ? t : s;
       int matches = 0, twins = 0;
-      for(int k = vertex_begin[t]; k < vertex_begin[t + 1]; ++k)
-        if(targets[vertex_corners[k]] == s)
+      for(int k = vertex_begin[v]; k < vertex_begin[v + 1]; ++k)
+      {
+        const int leaving = vertex_corners[k], arriving = previous(leaving);
+        const int match = looks_at_target ? leaving : arriving,
+                  twin = looks_at_target ? arriving : leaving;
+        if(source(match) == t && targets[match] == s)
         {
-          opposite[c] = vertex_corners[k];
+          opposite[c] = match;
           ++matches;
         }
-      for(int k = vertex_begin[s]; k < vertex_begin[s + 1]; ++k)
-        twins += targets[vertex_corners[k]] == t;
+        twins += source(twin) == s && targets[twin] == t;
+      }
       return s == t || matches > 1 || twins > 1;
     });
     if(refused >= 0)

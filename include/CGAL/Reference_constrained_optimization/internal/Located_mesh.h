@@ -38,6 +38,9 @@ public:
 
   const Placed_vertex& operator()(int v) const { return m_state.vertices[v]; }
 
+  // turned round where it is oriented against the mesh
+  const Reference_surface& reference() const { return m_surface; }
+
 private:
   Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference, int)
     : m_surface(reference),

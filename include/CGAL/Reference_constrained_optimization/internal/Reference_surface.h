@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/closest_point.h>
 #include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
+#include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
 
@@ -98,6 +99,14 @@ public:
     return (corner_point(f, 1) - corner_point(f, 0)).cross(corner_point(f, 2) - corner_point(f, 0));
   }
 
+  // whether rounding has a say in where the plane of a face is, or its square underflows
+  bool is_thin(int f) const
+  {
+    const double length = side_length(f, longest_side(f));
+    const double rounding = 1e-14, smallest = 1e-150;
+    return !(face_normal(f).norm() > (std::max)(rounding * length * length, smallest));
+  }
+
   // whether R is sharp at the edge at corner c
   bool is_crease(int c) const
   {
@@ -124,9 +133,18 @@ public:
     return 0.5 * (m_points[m_mesh.source(c)] + m_points[m_mesh.target(c)]);
   }
 
+  // the same, turned round where reverse() turned the vertices' normals
+  Vector_3 oriented_face_normal(int f) const
+  {
+    return m_is_reversed.empty() || !m_is_reversed[f] ? face_normal(f) : Vector_3(-face_normal(f));
+  }
+
   // turns the normals of whole components round, given by their faces
   void reverse(const std::vector<char>& is_reversed)
   {
+    m_is_reversed.resize(is_reversed.size(), 0);
+    for(std::size_t f = 0; f < is_reversed.size(); ++f)
+      m_is_reversed[f] = m_is_reversed[f] != is_reversed[f];
     for(int v = 0; v < m_mesh.number_of_vertices(); ++v)
       if(!m_mesh.is_isolated(v) && is_reversed[m_mesh.face_at(v)])
         m_normals[v] = -m_normals[v];
@@ -166,6 +184,28 @@ public:
       p, hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit));
   }
 
+  // The same where a face is known that may be near. What a descent finds from there bounds the search;
+  // where it finds p but for rounding, there is none.
+  Surface_point closest_near(const Vector_3& p, int face, double rounding) const
+  {
+    const Foot foot = descend_to(
+      m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face,
+      largest_small_valence);
+    const double distance = std::sqrt(foot.squared_distance);
+    const Surface_point known = {foot.position, foot.face, foot.barycentric};
+    if(distance <= rounding)
+      return known;
+    return distance < m_mean_edge_length ? closest(p, known) : closest(p);
+  }
+
+  // The same for a vertex of a mesh: the vertex of R that has its number may be near.
+  Surface_point closest_from_vertex(const Vector_3& p, int v) const
+  {
+    return v < m_mesh.number_of_vertices() && !m_mesh.is_isolated(v)
+             ? closest_near(p, m_mesh.face_at(v), 1e-14 * m_diagonal)
+             : closest(p);
+  }
+
   // what is within a distance of p, by the tree: the closest point of every face there
   std::vector<Surface_point> all_within(const Vector_3& p, double distance) const
   {
@@ -175,11 +215,18 @@ public:
     s.tree.all_intersected_primitives(
       Kernel::Iso_cuboid_3(kernel_point(p - half), kernel_point(p + half)),
       std::back_inserter(hits));
-    std::vector<Surface_point> result;
+    std::vector<int> found;
     for(const Triangle_iterator& hit : hits)
+      found.push_back(s.face[hit - Triangle_iterator(s.triangles.begin())]);
+    if(s.has_pieces)
     {
-      const Surface_point q =
-        closest_in_face(p, s.face[hit - Triangle_iterator(s.triangles.begin())]);
+      std::sort(found.begin(), found.end());
+      found.erase(std::unique(found.begin(), found.end()), found.end());
+    }
+    std::vector<Surface_point> result;
+    for(const int f : found)
+    {
+      const Surface_point q = closest_in_face(p, f);
       if((q.position - p).norm() <= distance)
         result.push_back(q);
     }
@@ -236,10 +283,12 @@ private:
   {
     std::once_flag is_built;
     std::vector<Kernel::Triangle_3> triangles;
-    std::vector<int> face; // per triangle
+    std::vector<int> face;   // per triangle
+    bool has_pieces = false; // whether some face is there in several triangles
     Triangle_tree<Kernel, Triangle_iterator> tree;
     // Faces with next to no area confuse such a tree. What they hold that no other face does, up to
-    // rounding: their longest sides, where the face behind is like that, too.
+    // rounding: their longest sides, where the face behind is like that, too, and components that are
+    // a point.
     std::vector<Kernel::Segment_3> hairs;
     std::vector<int> hair_face;
     Segment_tree<Kernel, Segment_iterator> hair_tree;
@@ -281,24 +330,24 @@ private:
   void build_tree() const
   {
     Search& s = *m_search;
+    const double fill = box_over_face_limit();
+    bool has_point = false;
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
-      const Kernel::Point_3 p[3] = {kernel_point(corner_point(f, 0)),
-                                    kernel_point(corner_point(f, 1)),
-                                    kernel_point(corner_point(f, 2))};
+      const Vector_3 p[3] = {corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)};
       if(!is_thin(f))
       {
-        s.triangles.emplace_back(p[0], p[1], p[2]);
-        s.face.push_back(f);
+        add_pieces(p, f, box_over_face(f) / fill);
         continue;
       }
       const int i = longest_side(f), behind = m_mesh.opposite[m_mesh.face_begin[f] + i];
-      if(side_length(f, i) > 0 && (behind < 0 || is_thin(m_mesh.corner_face[behind])))
-      {
-        s.hairs.emplace_back(p[i], p[(i + 1) % 3]);
-        s.hair_face.push_back(f);
-      }
+      const double length = side_length(f, i);
+      has_point = has_point || !(length > 0);
+      if(length > 0 && (behind < 0 || is_thin(m_mesh.corner_face[behind])))
+        add_hair(p[i], p[(i + 1) % 3], f);
     }
+    if(has_point)
+      add_points();
     s.tree.insert(s.triangles.begin(), s.triangles.end());
     s.tree.build();
     s.tree.accelerate_distance_queries();
@@ -307,12 +356,70 @@ private:
     s.hair_tree.accelerate_distance_queries();
   }
 
-  // whether rounding has a say in where the plane of a face is, or its square underflows
-  bool is_thin(int f) const
+  void add_hair(const Vector_3& from, const Vector_3& to, int f) const
   {
-    const double length = side_length(f, longest_side(f));
-    const double rounding = 1e-14, smallest = 1e-150;
-    return !(face_normal(f).norm() > (std::max)(rounding * length * length, smallest));
+    m_search->hairs.emplace_back(kernel_point(from), kernel_point(to));
+    m_search->hair_face.push_back(f);
+  }
+
+  // Components that are a point each; the tree wants segments that have a length.
+  void add_points() const
+  {
+    std::vector<char> is_left(m_mesh.number_of_faces(), 1);
+    for(int first = 0; first < m_mesh.number_of_faces(); ++first)
+      if(is_left[first] && !(side_length(first, longest_side(first)) > 0))
+      {
+        const std::vector<int> component = take_connected_region(m_mesh, first, is_left);
+        const bool is_point = std::none_of(component.begin(), component.end(), [&](int f) {
+          return side_length(f, longest_side(f)) > 0;
+        });
+        const double little = 1e-14 * m_diagonal;
+        if(is_point)
+          add_hair(corner_point(first, 0), corner_point(first, 0) + Vector_3(little, 0, 0), first);
+      }
+  }
+
+  // Boxes of the faces of a large fan hold one another, so that a tree of them would look at all of
+  // them for every point. Faces that fill little of their boxes go into the tree in pieces.
+  void add_pieces(const Vector_3* p, int f, double number) const
+  {
+    Search& s = *m_search;
+    if(!(number > 1))
+    {
+      s.triangles.emplace_back(kernel_point(p[0]), kernel_point(p[1]), kernel_point(p[2]));
+      s.face.push_back(f);
+      return;
+    }
+    s.has_pieces = true;
+    int i = 0;
+    for(const int k : {1, 2})
+      if((p[(k + 1) % 3] - p[k]).squaredNorm() > (p[(i + 1) % 3] - p[i]).squaredNorm())
+        i = k;
+    const Vector_3 &a = p[i], &b = p[(i + 1) % 3], &c = p[(i + 2) % 3], middle = 0.5 * (a + b);
+    const Vector_3 first[3] = {a, middle, c}, second[3] = {middle, b, c};
+    add_pieces(first, f, number / 2);
+    add_pieces(second, f, number / 2);
+  }
+
+  // the largest side of a face's box over twice the area of the face, but no more than there is use for
+  double box_over_face(int f) const
+  {
+    const Vector_3 &a = corner_point(f, 0), &b = corner_point(f, 1), &c = corner_point(f, 2);
+    const Vector_3 box = a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c);
+    const double side = (std::max)({box.x() * box.y(), box.y() * box.z(), box.z() * box.x()});
+    const double enough = 1024;
+    return (std::min)(side / face_normal(f).norm(), enough);
+  }
+
+  // what that may be before a face is divided, such that there are few pieces for each face in the mean
+  double box_over_face_limit() const
+  {
+    double sum = 0;
+    for(int f = 0; f < m_mesh.number_of_faces(); ++f)
+      if(!is_thin(f))
+        sum += box_over_face(f);
+    const double at_least = 16, pieces = 8;
+    return (std::max)(at_least, sum / (pieces * m_mesh.number_of_faces()));
   }
 
   int longest_side(int f) const
@@ -380,7 +487,8 @@ private:
   Indexed_mesh m_mesh;
   std::vector<Vector_3> m_points;
   std::vector<Vector_3> m_normals;
-  std::vector<int> m_creases; // corners
+  std::vector<char> m_is_reversed; // per face; empty if none is
+  std::vector<int> m_creases;      // corners
   std::vector<int> m_original_face;
   std::unique_ptr<Search> m_search;
   double m_diagonal = 0, m_mean_edge_length = 0, m_area = 0;

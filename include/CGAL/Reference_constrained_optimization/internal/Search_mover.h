@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
@@ -157,7 +158,8 @@ private:
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
           const int f = mesh.corner_face[mesh.vertex_corners[k]];
-          if(std::find(faces.begin(), faces.end(), f) == faces.end())
+          // at one vertex there is none twice
+          if(vertices.size() == 1 || std::find(faces.begin(), faces.end(), f) == faces.end())
             faces.push_back(f);
         }
     };
@@ -205,7 +207,7 @@ private:
       std::vector<int> free;
       for(const int v : element.vertices)
       {
-        if(may_move(patch, v))
+        if(may_move(patch, v) && mesh.valence(v) <= largest_small_valence)
           free.push_back(v);
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
@@ -287,6 +289,8 @@ private:
 
   static bool are_neighbours(const Indexed_mesh& mesh, int v, int w)
   {
+    if(mesh.valence(w) < mesh.valence(v))
+      std::swap(v, w);
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     {
       const int c = mesh.vertex_corners[k];

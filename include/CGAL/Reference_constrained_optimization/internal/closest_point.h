@@ -7,6 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
 
+#include <limits>
+
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
@@ -82,9 +84,13 @@ struct Foot
 };
 
 // Local closest point: from `face` to ever closer neighbours. Never leaves the sheet it starts on.
-// `point(v)` is the position of a vertex.
+// `point(v)` is the position of a vertex. At a vertex of more faces than `largest_valence` it ends.
 template <typename PointAccess>
-Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector_3& p, int face)
+Foot descend_to(const Indexed_mesh& mesh,
+                const PointAccess& point,
+                const Vector_3& p,
+                int face,
+                int largest_valence = (std::numeric_limits<int>::max)())
 {
   const auto closest_in_face = [&](int f) {
     const int* v = &mesh.corner_vertex[mesh.face_begin[f]];
@@ -124,6 +130,8 @@ Foot descend_to(const Indexed_mesh& mesh, const PointAccess& point, const Vector
     else
     {
       const int v = mesh.corner_vertex[begin + one];
+      if(mesh.valence(v) > largest_valence)
+        return best;
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         consider(mesh.corner_face[mesh.vertex_corners[k]]);
     }

@@ -16,6 +16,12 @@ namespace internal {
 
 constexpr double degrees_per_radian = 57.295779513082320877;
 
+// angle in degrees between two vectors, from 0 to 180; 0 if one of them has length 0
+inline double angle_between(const Vector_3& a, const Vector_3& b)
+{
+  return degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 // Angle in degrees between the sides of a face at corner c, from 0 to 180; 0 if a side has length 0.
 // `point(v)` is the position of a vertex.
 template <typename PointAccess>
@@ -23,7 +29,7 @@ double corner_angle(const Indexed_mesh& mesh, const PointAccess& point, int c)
 {
   const Vector_3& p = point(mesh.source(c));
   const Vector_3 a = point(mesh.target(c)) - p, b = point(mesh.source(mesh.previous(c))) - p;
-  return degrees_per_radian * std::atan2(a.cross(b).norm(), a.dot(b));
+  return angle_between(a, b);
 }
 
 // What the smallest angle around a vertex can be if its corners share the angle that is there: the

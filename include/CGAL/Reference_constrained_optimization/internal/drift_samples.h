@@ -108,8 +108,21 @@ void locate_sample(const Patch& patch,
   };
   if(sample.face >= 0)
     start(sample.face);
+  // The way out of a large fan of R takes long to find, for each of the samples around it: it is looked for
+  // where nothing else is known.
+  const auto is_in_large_fan = [&](const Surface_point& point) {
+    const int v = vertex_at(reference, point);
+    return v >= 0 && reference.mesh().valence(v) > largest_small_valence;
+  };
+  const auto start_at = [&](int k) {
+    if(sample.distance > unfelt)
+      start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
+  };
   for(int k = 0; k < number_of_corners; ++k)
-    start(face_towards(reference, corner(k).on_reference, p - corner(k).position));
+    if(!is_in_large_fan(corner(k).on_reference))
+      start_at(k);
+  for(int k = 0; k < number_of_corners && number_of_starts == 0; ++k)
+    start_at(k);
   sample.bound = patch.bound_of(s / 4, sample.face);
 }
 

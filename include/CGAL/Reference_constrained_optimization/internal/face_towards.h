@@ -30,6 +30,19 @@ inline double progress_in_wedge(const Vector_3& a, const Vector_3& b, const Vect
   return (std::max)({0., da / std::sqrt(aa), db / std::sqrt(bb)});
 }
 
+// the vertex of R where a point is; -1 if it is at none
+inline int vertex_at(const Reference_surface& reference, const Surface_point& point)
+{
+  int zeros = 0, corner = -1;
+  for(int i = 0; i < 3; ++i)
+    if(point.barycentric(i) == 0)
+      ++zeros;
+    else
+      corner = i;
+  const Indexed_mesh& mesh = reference.mesh();
+  return zeros == 2 ? mesh.corner_vertex[mesh.face_begin[point.face] + corner] : -1;
+}
+
 // The face of R that a point moves into when it moves as far as it can along `direction`; its own
 // where it is inside one, and where no face leads that way.
 inline int face_towards(const Reference_surface& reference,
@@ -37,16 +50,10 @@ inline int face_towards(const Reference_surface& reference,
                         const Vector_3& direction)
 {
   const Indexed_mesh& mesh = reference.mesh();
-  int zeros = 0, zero = -1, corner = -1;
-  for(int i = 0; i < 3; ++i)
-    if(point.barycentric(i) == 0)
-    {
-      ++zeros;
-      zero = i;
-    }
-    else
-      corner = i;
-  if(zeros == 0)
+  int zero = 2;
+  while(zero >= 0 && point.barycentric(zero) != 0)
+    --zero;
+  if(zero < 0)
     return point.face;
   int best = point.face;
   double most = 0;
@@ -57,9 +64,9 @@ inline int face_towards(const Reference_surface& reference,
       best = face;
     }
   };
-  if(zeros == 2)
+  const int v = vertex_at(reference, point);
+  if(v >= 0)
   {
-    const int v = mesh.corner_vertex[mesh.face_begin[point.face] + corner];
     const Vector_3& p = reference.points()[v];
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     {

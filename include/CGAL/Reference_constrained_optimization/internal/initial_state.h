@@ -83,37 +83,48 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
   return is_free;
 }
 
-// Where R passes a vertex within a distance more than once, its point of the sheet along which its
-// faces lie; else the given one.
-inline Surface_point on_own_sheet(const Indexed_mesh& mesh,
-                                  const std::vector<Vector_3>& points,
-                                  int v,
-                                  const Reference_surface& reference,
-                                  const Surface_point& found,
-                                  double distance)
+inline double cosine_between(const Vector_3& a, const Vector_3& b)
 {
-  const auto cosine = [](const Vector_3& a, const Vector_3& b) {
-    const double lengths = a.norm() * b.norm();
-    return lengths > 0 ? a.dot(b) / lengths : 0;
-  };
+  const double lengths = a.norm() * b.norm();
+  return lengths > 0 ? a.dot(b) / lengths : 0;
+}
+
+// Where R passes a vertex within a distance more than once: its points of R on all sheets, the given one
+// first. Empty if there is one sheet only.
+inline std::vector<Surface_point> sheets_at(const Reference_surface& reference,
+                                            const Vector_3& p,
+                                            const Surface_point& found,
+                                            double distance)
+{
   const Vector_3 found_normal = reference.normal(found);
   const double same_sheet = 0.9;
-  std::vector<Surface_point> others;
-  for(const Surface_point& q : reference.all_within(points[v], distance))
-    if(cosine(reference.normal(q), found_normal) < same_sheet)
-      others.push_back(q);
-  if(others.empty())
-    return found;
+  std::vector<Surface_point> sheets;
+  for(const Surface_point& q : reference.all_within(p, distance))
+    if(cosine_between(reference.normal(q), found_normal) < same_sheet)
+      sheets.push_back(q);
+  if(!sheets.empty())
+    sheets.insert(sheets.begin(), found);
+  return sheets;
+}
+
+// That of a vertex' points of R along whose sheet its faces lie. As long as it is not known whether the
+// mesh is oriented the other way, those that lie against it count nearly as much.
+inline Surface_point own_sheet(const Indexed_mesh& mesh,
+                               const std::vector<Vector_3>& points,
+                               int v,
+                               const Reference_surface& reference,
+                               const std::vector<Surface_point>& sheets,
+                               bool knows_orientation)
+{
   Vector_3 normal = Vector_3::Zero();
   for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     normal += face_vector_area(mesh, points, mesh.corner_face[mesh.vertex_corners[k]]);
-  // the mesh may be oriented the other way, but not if R has both sides there
   const auto agreement = [&](const Surface_point& q) {
-    const double c = cosine(reference.normal(q), normal), little = 1e-3;
-    return std::abs(c) + little * c;
+    const double c = cosine_between(reference.normal(q), normal), little = 1e-3;
+    return knows_orientation ? c : std::abs(c) + little * c;
   };
-  Surface_point best = found;
-  for(const Surface_point& q : others)
+  Surface_point best = sheets.front();
+  for(const Surface_point& q : sheets)
     if(agreement(q) > agreement(best))
       best = q;
   return best;
@@ -147,6 +158,7 @@ void place_on_reference(const std::vector<Vector_3>& points,
     return is_twin ? v : index.find(points[v]);
   };
   state.vertices.resize(points.size());
+  std::vector<std::vector<Surface_point>> sheets(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
     for(int v = begin; v < end; ++v)
     {
@@ -155,24 +167,26 @@ void place_on_reference(const std::vector<Vector_3>& points,
       {
         const int twin = find_twin(v);
         Surface_point& point = state.vertices[v].on_reference;
-        point = twin >= 0 ? reference.at_vertex(twin) : reference.closest(points[v]);
+        point = twin >= 0 ? reference.at_vertex(twin) : reference.closest_from_vertex(points[v], v);
         if(twin < 0 && (point.position - points[v]).norm() <= touching)
-          point = on_own_sheet(mesh, points, v, reference, point, touching);
+        {
+          sheets[v] = sheets_at(reference, points[v], point, touching);
+          if(!sheets[v].empty())
+            point = own_sheet(mesh, points, v, reference, sheets[v], false);
+        }
       }
     }
   });
+  const auto place = [&](int v) {
+    Placed_vertex& placed = state.vertices[v];
+    const bool moves =
+      state.is_free[v] && (placed.on_reference.position - points[v]).norm() > rounding;
+    placed.position = moves ? placed.on_reference.position : points[v];
+  };
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {
-    Placed_vertex& placed = state.vertices[v];
-    placed.position = points[v];
-    if(mesh.is_isolated(v))
-      continue;
-    if(state.is_free[v])
-    {
-      ++result.number_of_free_vertices;
-      if((placed.on_reference.position - points[v]).norm() > rounding)
-        placed.position = placed.on_reference.position;
-    }
+    place(v);
+    result.number_of_free_vertices += state.is_free[v] && !mesh.is_isolated(v);
   }
 
   const auto orient = [&]() {
@@ -193,7 +207,9 @@ void place_on_reference(const std::vector<Vector_3>& points,
     {
       const Placed_vertex& v = vertex(mesh.corner_vertex[c]);
       const double d = n.dot(v.normal);
-      agreement[v.on_reference.face] += d;
+      // where there are several sheets that is still open
+      if(sheets[mesh.corner_vertex[c]].empty())
+        agreement[v.on_reference.face] += d;
       disagrees = disagrees || d < 0;
     }
   }
@@ -213,6 +229,13 @@ void place_on_reference(const std::vector<Vector_3>& points,
         is_reversed[f] = 1;
   }
   reference.reverse(is_reversed);
+  // of two sheets that are turned against each other, the one that faces as the mesh does
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+    if(!sheets[v].empty())
+    {
+      state.vertices[v].on_reference = own_sheet(mesh, points, v, reference, sheets[v], true);
+      place(v);
+    }
   orient();
 }
 

@@ -102,7 +102,7 @@ distance_to_reference(const FaceGraph& mesh,
       continue;
     ++result.number_of_vertices;
     const internal::Vector_3& p = copy.points[i];
-    double distance = (surface.closest(p).position - p).norm();
+    double distance = (surface.closest_from_vertex(p, i).position - p).norm();
     // of a needle only the sides are found to all digits: another face may be closer
     if(distance > result.tolerance && distance < 1e-8 * surface.diagonal())
       for(const internal::Surface_point& s : surface.all_within(p, distance))

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
@@ -77,19 +78,34 @@ inline Directed_drift directed_drift(const Reference_surface& from, const Refere
   const std::vector<Vector_3>& points = from.points();
   Directed_drift result;
   double largest = 0, sum = 0;
+  // The same face of the other surface is likely to be near, as where one came from the other; and so is
+  // what was close to the sample before.
+  const double rounding = 1e-12 * to.diagonal(); // points of needles are not known any better
+  Surface_point last;
   const auto sample = [&](const Vector_3& p) {
-    const double d = (to.closest(p).position - p).squaredNorm();
+    last = last.face < 0 ? to.closest(p) : to.closest_near(p, last.face, rounding);
+    const double d = (last.position - p).squaredNorm();
     largest = (std::max)(largest, d);
     sum += d;
     ++result.number_of_samples;
   };
-  // face by face, so that successive samples are neighbours
+  // face by face, and from the middle of each, so that successive samples are close to the same face
   std::vector<char> is_done(points.size(), 0);
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
     const Vector_3 corner[3] = {from.corner_point(f, 0), from.corner_point(f, 1),
                                 from.corner_point(f, 2)};
     const Vector_3 sum_of_corners = corner[0] + corner[1] + corner[2];
+    const Vector_3 middle = sum_of_corners / 3;
+    if(f < to.mesh().number_of_faces())
+    {
+      const Surface_point same = to.closest_in_face(middle, f);
+      if(last.face < 0 || (same.position - middle).norm() < (last.position - middle).norm())
+        last = same;
+    }
+    sample(middle);
+    for(int i = 0; i < 3; ++i)
+      sample(0.2 * sum_of_corners + 0.4 * corner[i]);
     for(int i = 0; i < 3; ++i)
     {
       const int c = mesh.face_begin[f] + i, v = mesh.corner_vertex[c];
@@ -98,9 +114,7 @@ inline Directed_drift directed_drift(const Reference_surface& from, const Refere
       is_done[v] = 1;
       if(mesh.opposite[c] < c)
         sample(0.5 * (corner[i] + corner[(i + 1) % 3]));
-      sample(0.2 * sum_of_corners + 0.4 * corner[i]);
     }
-    sample(sum_of_corners / 3);
   }
   result.maximum = std::sqrt(largest);
   result.root_mean_square = std::sqrt(sum / double(result.number_of_samples));

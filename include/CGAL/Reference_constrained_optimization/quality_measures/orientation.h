@@ -39,8 +39,8 @@ struct Orientation_defects
  * The reference's normal at a vertex of the mesh is interpolated linearly from the area-weighted
  * unit normals at the vertices of the reference's triangle in which the vertex' closest point lies;
  * where the reference passes through a vertex more than once, on the sheet along which the vertex'
- * faces lie.
- * If the mesh as a whole is oriented against the reference, these normals are turned round first.
+ * faces lie, facing as they do.
+ * Components of the reference that are oriented against the mesh are turned round first.
  *
  * \param mesh the mesh
  * \param reference the reference

@@ -1,0 +1,136 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_NORMAL_DEVIATION_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_NORMAL_DEVIATION_H
+
+#include <CGAL/Reference_constrained_optimization/internal/Located_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+
+#include <algorithm>
+#include <array>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * holds by how much the faces of a mesh are turned against a reference, in degrees from 0 to 180. Faces
+ * count by their area.
+ */
+struct Normal_deviation
+{
+  double mean = 0;           ///< mean over the area.
+  double maximum = 0;        ///< largest turn of a face.
+  double share_above_10 = 0; ///< part of the area in faces turned by more than 10 degrees.
+  double share_above_20 = 0; ///< the same for 20 degrees.
+  double share_above_45 = 0; ///< the same for 45 degrees.
+};
+
+namespace internal {
+
+// Angle between a normal and that of the reference's face that is closest to p, from what was closest to
+// a point nearby. At an edge or a vertex of the reference several are: the smallest angle. Faces without
+// area have no say, unless there are no others.
+inline double turn_at(const Reference_surface& reference,
+                      const Vector_3& p,
+                      const Vector_3& normal,
+                      Surface_point& closest)
+{
+  const double rounding = 1e-12 * reference.diagonal();
+  closest = reference.closest_near(p, closest.face, rounding);
+  double smallest = 360;
+  const auto consider = [&](int f) {
+    if(!reference.is_thin(f))
+      smallest = (std::min)(smallest, angle_between(normal, reference.oriented_face_normal(f)));
+  };
+  consider(closest.face);
+  const double nothing = 1e-4; // the others need not be looked for then
+  if(smallest > nothing)
+    for(const Surface_point& q : reference.all_within(p, (closest.position - p).norm() + rounding))
+      consider(q.face);
+  return smallest <= 180 ? smallest : angle_between(normal, reference.normal(closest));
+}
+
+} // namespace internal
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * measures by how much the faces of a mesh are turned against a reference: what distances do not tell, as
+ * a surface may be close to another and rough.
+ *
+ * At seven points of each triangle (quads are split by their shorter diagonal): its centroid, the three
+ * points with barycentric coordinates (.6, .2, .2), and the three midpoints of its edges, pulled inside to
+ * (.495, .495, .01), the angle is taken between the triangle's normal and that of the reference's face
+ * at the closest point; where several faces of the reference are equally close, the smallest angle. The
+ * turn of a triangle is the mean of the seven. Triangles without area do not count, on either
+ * side. Components of the reference that are oriented against the mesh are turned round first.
+ *
+ * Parameters are those of `orientation_defects()`.
+ *
+ * \return the turn in degrees: mean, maximum and distribution; zeros if no face of the mesh has an area.
+ *
+ * \throws Invalid_input as all quality measures, and if every face of the reference has zero area
+ */
+template <typename FaceGraph,
+          typename ReferenceMesh,
+          typename NamedParameters = parameters::Default_named_parameters,
+          typename NamedParametersReference = parameters::Default_named_parameters>
+Normal_deviation
+normal_deviation(const FaceGraph& mesh,
+                 const ReferenceMesh& reference,
+                 const NamedParameters& np = parameters::default_values(),
+                 const NamedParametersReference& np_reference = parameters::default_values())
+{
+  typedef internal::Vector_3 Vector_3;
+  const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
+  const internal::Located_mesh located(
+    copy, internal::read_measured_mesh(reference, np_reference, "reference"));
+  const std::array<Vector_3, 7> samples = {
+    {Vector_3::Constant(1. / 3), Vector_3(.6, .2, .2), Vector_3(.2, .6, .2), Vector_3(.2, .2, .6),
+     Vector_3(.495, .495, .01), Vector_3(.01, .495, .495), Vector_3(.495, .01, .495)}};
+
+  Normal_deviation result;
+  double area = 0, sum = 0;
+  for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
+    for(const std::array<int, 3>& t : internal::split_face(copy.mesh, copy.points, f))
+    {
+      const auto corner = [&](int i) -> const Vector_3& {
+        return copy.points[copy.mesh.corner_vertex[t[i]]];
+      };
+      const Vector_3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+      const double weight = 0.5 * normal.norm();
+      if(!(weight > 0))
+        continue;
+      internal::Surface_point closest = located(copy.mesh.corner_vertex[t[0]]).on_reference;
+      double turn = 0;
+      for(const Vector_3& b : samples)
+        turn += internal::turn_at(located.reference(),
+                                  b(0) * corner(0) + b(1) * corner(1) + b(2) * corner(2), normal,
+                                  closest);
+      turn /= double(samples.size());
+      area += weight;
+      sum += weight * turn;
+      result.maximum = (std::max)(result.maximum, turn);
+      result.share_above_10 += turn > 10 ? weight : 0;
+      result.share_above_20 += turn > 20 ? weight : 0;
+      result.share_above_45 += turn > 45 ? weight : 0;
+    }
+  if(area > 0)
+  {
+    result.mean = sum / area;
+    result.share_above_10 /= area;
+    result.share_above_20 /= area;
+    result.share_above_45 /= area;
+  }
+  return result;
+}
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_NORMAL_DEVIATION_H
