@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Steps on the surface: patches that are not flattened, parts of steps, ways into faces of the
-// reference, the barrier on angles, the finishing stage as a whole, and larger patches after a rest.
+// reference, the barrier on angles, the finishing stage as a whole, larger patches after a rest, and clusters of vertices.
 
 #include "test_meshes.h"
 
@@ -653,6 +653,61 @@ void test_starting_again()
   }
 }
 
+// ------------------------------------------------------------------------------------- clusters
+
+// A saddle with a border where vertices all but coincide with their neighbours, inside and at the border,
+// as marching cubes leave them. What fixed vertices of the border hold stays sharp: the faces at these
+// short edges, and no others.
+void test_clusters(double size)
+{
+  const Scope scope("clusters of " + std::to_string(-std::log10(size)) + " digits");
+  const int n = 16;
+  Shape start = plane_grid(n, n);
+  const Indexed_mesh grid = indexed(start);
+  std::vector<char> is_in(start.points.size(), 0);
+  for(const int center : {2 * (n + 1) + 7, 7 * (n + 1) + 4, 8 * (n + 1) + 11, 13 * (n + 1) + 13, 6,
+                          9 * (n + 1), 12 * (n + 1) - 1, n * (n + 1) + 5})
+  {
+    const Vector_3 p = start.points[center];
+    for(int k = grid.vertex_begin[center]; k < grid.vertex_begin[center + 1]; ++k)
+    {
+      const int c = grid.vertex_corners[k];
+      for(const int v : {center, grid.target(c), grid.source(grid.previous(c))})
+        if(!is_in[v])
+        {
+          is_in[v] = 1;
+          start.points[v] = p + size * (start.points[v] - p);
+        }
+    }
+  }
+  for(Vector_3& p : start.points)
+    p.z() = 0.5 * (p.x() - 0.4) * (p.y() - 0.6);
+  std::size_t held = 0;
+  for(int c = 0; c < grid.number_of_corners(); ++c)
+    held += grid.opposite[c] < 0 && is_in[grid.source(c)] && is_in[grid.target(c)];
+  const auto sharp = [](const Shape& shape) {
+    std::size_t count = 0;
+    for(const std::vector<int>& f : shape.faces)
+      count += smallest_angle(Shape{shape.points, {f}}) < 10;
+    return count;
+  };
+  RCO_CHECK_LESS(2 * held, sharp(start));
+  for(const unsigned int seed : {0, 1, 2, 3})
+  {
+    const auto result = optimized<CGAL::Sequential_tag>(start, start, true, seed);
+    RCO_CHECK_LESS_EQUAL(sharp(result.first), held);
+    RCO_CHECK_LESS(mean_smallest_angle(start), mean_smallest_angle(result.first));
+    RCO_CHECK_LESS_EQUAL(smallest_angle(start), smallest_angle(result.first));
+    for(std::size_t v = 0; v < start.points.size(); ++v)
+      if(grid.is_border_vertex[v])
+        RCO_CHECK(same_bits(start.points[v], result.first.points[v]));
+    std::cout << "clusters of " << size << ": faces below 10 degrees " << sharp(start) << " -> "
+              << sharp(result.first) << ", of which stay " << held << "; mean "
+              << mean_smallest_angle(start) << " -> " << mean_smallest_angle(result.first)
+              << std::endl;
+  }
+}
+
 int main()
 {
   test_partition();
@@ -673,6 +728,8 @@ int main()
   }
 
   test_starting_again();
+  for(const double size : {1e-4, 1e-11, 1e-13})
+    test_clusters(size);
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);
   test_finishing("torus", scrambled(ring, 0.3, 10, onto_torus(1, 0.4)), ring, 0.5);
   test_finishing("sphere", scrambled(ball, 0.3, 11, onto_sphere), ball, 0);

@@ -7,6 +7,9 @@
 
 #include <CGAL/Reference_constrained_optimization/Isotropic_density.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace CGAL {
 namespace Reference_constrained_optimization {
 
@@ -30,7 +33,7 @@ public:
   /// constructs the density. `exponent_factor` must be positive.
   explicit Exponential_MIPS_density(double exponent_factor = 1)
     : m_factor(exponent_factor),
-      m_cap(2 * exponent_factor + 18),
+      m_cap(std::getenv("RCO_CAP") ? 2 * exponent_factor + 18 : (std::min)(2 * exponent_factor + 18, 20 * exponent_factor)),
       m_threshold(m_factor / m_cap)
   {}
 

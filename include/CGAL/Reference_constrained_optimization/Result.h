@@ -53,8 +53,10 @@ struct Stage_times
  */
 struct Result
 {
-  double initial_energy = 0; ///< mean density before the first step.
-  double final_energy = 0;   ///< mean density after the last step.
+  /// mean density before the first step. With the energy of the smallest angle, faces at edges between
+  /// constrained vertices that all but coincide are left out, here and in `final_energy`.
+  double initial_energy = 0;
+  double final_energy = 0; ///< mean density after the last step.
 
   std::size_t number_of_iterations = 0; ///< outer iterations made (\f$ N_{out} \f$ in the paper).
   /// patches visited, in all iterations and after them (search, finishing stage); \f$ N_{in} \f$ is this

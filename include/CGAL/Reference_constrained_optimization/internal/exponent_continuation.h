@@ -11,6 +11,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -78,13 +79,21 @@ private:
   {
     const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
     std::vector<double> densities(state.elements.size());
+    const double none = -1; // where nothing can move
     for_each_block<ConcurrencyTag>(int(densities.size()), [&](int begin, int end, int) {
       for(int e = begin; e < end; ++e)
-        densities[e] = element_energy(density, state.elements[e], vertex);
+      {
+        const std::array<int, 3>& v = state.elements[e].vertices;
+        const bool is_fixed = !state.is_free[v[0]] && !state.is_free[v[1]] && !state.is_free[v[2]];
+        densities[e] = is_fixed ? none : element_energy(density, state.elements[e], vertex);
+      }
     });
+    densities.erase(std::remove(densities.begin(), densities.end(), none), densities.end());
+    if(densities.empty())
+      return 1;
     std::sort(densities.begin(), densities.end());
     const double trimmed = knob("RCO_TRIM", 0.02);
-    const std::size_t half = densities.size() / 2 + 1, most = (std::max)(half, std::size_t((1 - trimmed) * densities.size()));
+    const std::size_t half = (densities.size() + 1) / 2, most = (std::max)(half, std::size_t((1 - trimmed) * densities.size()));
     double sum = 0, half_sum = 0;
     for(std::size_t i = 0; i < most; ++i)
     {

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
@@ -127,7 +128,7 @@ void optimize(const FaceRange& range,
                                surface_area(copy.mesh, mesh_points),
                                surface_area(surface.mesh(), reference_points));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
-  const Element_set elements(energy, context, is_in_range, frame);
+  Element_set elements(energy, context, is_in_range, frame);
   interruption.check();
   Optimization_state state{copy.mesh, surface,     elements,       {}, {}, {},
                            {},        is_in_range, frame.caution()};
@@ -163,6 +164,10 @@ void optimize(const FaceRange& range,
     Sliding_vertices(state, constraints, lines, loop_parameters.relax_constraints,
                      frame.resolution(), result);
   }
+  if(prizes_angles(elements))
+    elements.set_aside(hopeless_faces(
+      copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; },
+      state.is_free));
   Caller_view view(frame, mesh_points, reference_points, state);
   view.remember_start();
   result.largest_initial_distance = view.largest_distance();

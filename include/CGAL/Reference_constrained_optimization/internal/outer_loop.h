@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/Round_solver.h>
 #include <CGAL/Reference_constrained_optimization/internal/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/exponent_continuation.h>
@@ -100,7 +101,7 @@ private:
     m_limits.accepts_all = m_parameters.accepts_all;
     m_limits.strain_resistance = largest_resistance;
     m_exponent.template advance<ConcurrencyTag>(m_state);
-    const Global_measure before = scale_to_density();
+    Global_measure before = scale_to_density();
     m_limits.sharpest = before.sharpest;
     m_initial_energy = energy_of_caller();
 
@@ -112,6 +113,14 @@ private:
 
     m_interruption.check();
     m_result.status = Status::iteration_limit;
+    if(m_prizes_angles && m_parameters.use_on_surface_steps && m_parameters.number_of_iterations > 0)
+    {
+      if(!open_clusters())
+        return;
+      m_exponent.template advance<ConcurrencyTag>(m_state);
+      before = scale_to_density();
+      m_round_solver.drift_guard().set_barrier(make_barrier());
+    }
     const bool revisits = m_parameters.use_on_surface_steps || m_parameters.use_finishing_stage;
     if(iterate_to_convergence(before) && revisits && revisit_worst() && finishes_angles())
       finish_angles();
@@ -186,6 +195,30 @@ private:
     catch(const Interrupted&)
     {
       return false;
+    }
+  }
+
+  // Clusters are opened as long as they get fewer. False if cut short.
+  bool open_clusters()
+  {
+    const auto point = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
+    std::size_t before = (std::numeric_limits<std::size_t>::max)();
+    while(true)
+    {
+      std::vector<char> is_in(m_state.mesh.number_of_vertices(), 0);
+      std::size_t number = 0;
+      for(const std::vector<int>& cluster : vertex_clusters(m_state.mesh, point))
+        for(const int v : cluster)
+        {
+          is_in[v] = 1;
+          number += m_state.is_free[v];
+        }
+      if(number == 0 || number >= before)
+        return true;
+      before = number;
+      const std::vector<char> faces = faces_around<ConcurrencyTag>(m_state.mesh, is_in, 1);
+      if(!completes([&]() { return visit_regions(faces, Moves::opening, m_density); }))
+        return false;
     }
   }
 

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_PATCH_SOLVER_H
 
+#include <CGAL/Reference_constrained_optimization/internal/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/On_surface_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/Search_mover.h>
@@ -24,7 +25,7 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // how a patch is moved
-enum class Moves { flattened, on_surface, by_search };
+enum class Moves { flattened, on_surface, by_search, opening };
 
 // What is known of a patch after it was solved. All patches of a round are kept until it ends: what
 // only the solver needs is dropped.
@@ -72,6 +73,7 @@ public:
       m_flattened_mover(state.reference, parameters.mover, interruption),
       m_on_surface_mover(state.reference, parameters.on_surface_newton_steps, interruption),
       m_search_mover(state.reference, interruption),
+      m_cluster_mover(state.reference),
       m_acceptance(interruption),
       m_flattened_proposals(parameters.proposals_per_patch),
       m_on_surface_proposals(parameters.on_surface_proposals),
@@ -115,6 +117,8 @@ public:
       m_search_mover.set_target(limits.searched, limits.sharp);
       improve(m_search_mover, 1, m_tolerance, state, density, limits, s);
     }
+    else if(moves == Moves::opening)
+      improve(m_cluster_mover, 1, m_tolerance, state, density, limits, s);
     else
     {
       // its steps are cheap: a small gain is worth another
@@ -208,6 +212,7 @@ private:
   Flattened_mover m_flattened_mover;
   On_surface_mover m_on_surface_mover;
   Search_mover m_search_mover;
+  Cluster_mover m_cluster_mover;
   Acceptance_test m_acceptance;
   int m_flattened_proposals, m_on_surface_proposals;
   double m_tolerance;
