@@ -100,12 +100,13 @@ public:
     }
   }
 
-  // The vertices around those that have returned do so, too; false if there is none.
+  // Rings of vertices around those that have returned do so, too, twice as many each time; false if all
+  // have.
   bool grow()
   {
-    const std::vector<char> ring =
-      vertices_of<ConcurrencyTag>(m_mesh, faces_at<ConcurrencyTag>(m_mesh, m_has_returned));
-    return take_back(ring);
+    m_rings *= 2;
+    return take_back(vertices_of<ConcurrencyTag>(
+      m_mesh, faces_around<ConcurrencyTag>(m_mesh, m_has_returned, m_rings / 2 - 1)));
   }
 
 private:
@@ -158,6 +159,7 @@ private:
   const Flaws m_start;
   std::vector<char> m_has_returned; // per vertex
   bool m_has_mended = false;
+  int m_rings = 1;
 };
 
 } // namespace internal
