@@ -7,7 +7,6 @@
 
 #include <CGAL/Reference_constrained_optimization/Isotropic_density.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace CGAL {
@@ -32,8 +31,13 @@ class Exponential_MIPS_density : public Isotropic_density<Exponential_MIPS_densi
 public:
   /// constructs the density. `exponent_factor` must be positive.
   explicit Exponential_MIPS_density(double exponent_factor = 1)
+    : Exponential_MIPS_density(exponent_factor, 2 * exponent_factor + 18)
+  {}
+
+  /// constructs the density with another cap of the exponent, which must exceed `2 * exponent_factor`.
+  Exponential_MIPS_density(double exponent_factor, double cap)
     : m_factor(exponent_factor),
-      m_cap(std::getenv("RCO_CAP") ? 2 * exponent_factor + 18 : (std::min)(2 * exponent_factor + 18, 20 * exponent_factor)),
+      m_cap(cap),
       m_threshold(m_factor / m_cap)
   {}
 

@@ -53,10 +53,8 @@ struct Stage_times
  */
 struct Result
 {
-  /// mean density before the first step. With the energy of the smallest angle, faces at edges between
-  /// constrained vertices that all but coincide are left out, here and in `final_energy`.
-  double initial_energy = 0;
-  double final_energy = 0; ///< mean density after the last step.
+  double initial_energy = 0; ///< mean density before the first step.
+  double final_energy = 0;   ///< mean density after the last step.
 
   std::size_t number_of_iterations = 0; ///< outer iterations made (\f$ N_{out} \f$ in the paper).
   /// patches visited, in all iterations and after them (search, finishing stage); \f$ N_{in} \f$ is this

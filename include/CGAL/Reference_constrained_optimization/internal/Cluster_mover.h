@@ -78,29 +78,6 @@ std::vector<std::vector<int>> vertex_clusters(const Indexed_mesh& mesh, const Po
   return clusters;
 }
 
-// The faces at edges between vertices of a cluster that do not move. They stay needles, or else all around
-// would have to shrink towards them; were that asked for, they would own the energy, and everything
-// around would give way.
-template <typename PointAccess>
-std::vector<char>
-hopeless_faces(const Indexed_mesh& mesh, const PointAccess& point, const std::vector<char>& is_free)
-{
-  std::vector<char> result(mesh.number_of_faces(), 0);
-  std::vector<int> cluster_of(mesh.number_of_vertices(), -1);
-  int number = 0;
-  for(const std::vector<int>& cluster : vertex_clusters(mesh, point))
-  {
-    for(const int v : cluster)
-      if(!is_free[v])
-        cluster_of[v] = number;
-    ++number;
-  }
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-    if(cluster_of[mesh.source(c)] >= 0 && cluster_of[mesh.source(c)] == cluster_of[mesh.target(c)])
-      result[mesh.corner_face[c]] = 1;
-  return result;
-}
-
 // Takes the vertices of clusters apart, to the barycenters of their neighbours, with those around at
 // equal distances. Derivatives are no guide there: those of elements as small as a cluster exceed all
 // others by as many orders of magnitude, and Newton steps open it by a small factor each.

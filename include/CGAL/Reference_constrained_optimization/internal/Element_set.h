@@ -75,23 +75,6 @@ public:
       throw Invalid_input("energy: the mesh has no element");
   }
 
-  // takes the elements of the marked faces out of the energy, unless these are all
-  void set_aside(const std::vector<char>& is_set_aside)
-  {
-    std::vector<Element> kept;
-    std::vector<int> begins(1, 0);
-    for(std::size_t f = 0; f < is_set_aside.size(); ++f)
-    {
-      if(!is_set_aside[f])
-        kept.insert(kept.end(), m_elements.begin() + m_begin[f], m_elements.begin() + m_begin[f + 1]);
-      begins.push_back(int(kept.size()));
-    }
-    if(kept.empty())
-      return;
-    m_elements.swap(kept);
-    m_begin.swap(begins);
-  }
-
   int begin(int f) const { return m_begin[f]; }
   int end(int f) const { return m_begin[f + 1]; }
   const Element& operator[](int e) const { return m_elements[e]; }

@@ -69,11 +69,14 @@ struct Optimization_state
   // coordinates were rounded to a frame this cannot have hidden anything then.
   double caution = 0;
   // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
-  // mesh, whether its turn against R is bounded; empty if none is
-  std::vector<char> is_mechanical = {}, bounds_turn = {};
+  // mesh, whether its turn against R is bounded, and per corner, whether its edge hardly turns on input and
+  // must not become sharp; empty if there are none
+  std::vector<char> is_mechanical = {}, bounds_turn = {}, is_smooth = {};
 
-  // of the input, per element: the smallest, in degrees, if their mean may not fall below what it was
-  std::vector<float> initial_angles = {};
+  // Where the turn of faces is bounded the mean of their smallest angles may not fall below the input's,
+  // if the energy is about angles: by how much their sum is above, in degrees.
+  bool guards_angles = false;
+  double angle_surplus = 0;
 
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
@@ -164,19 +167,15 @@ double element_energy(const Density& density,
   return density.value(element_jacobian(element, vertex));
 }
 
-// Cosine of the smallest angle of an element's triangle; 1 if a side has no length. Angles between a
-// side and a diagonal of a quad are nothing that anybody asks about: -1 there.
+// cosine of the smallest angle of a triangle, given by its three vertices; 1 if a side has no length
 template <typename VertexAccess>
-double smallest_angle_cosine(const Element_set::Element& element, const VertexAccess& vertex)
+double smallest_angle_cosine(const int* corners, const VertexAccess& vertex)
 {
-  if(element.is_in_quad)
-    return -1;
   Vector_3 sides[3]; // from each vertex to the next
   double lengths[3];
   for(int i = 0; i < 3; ++i)
   {
-    sides[i] =
-      vertex(element.vertices[(i + 1) % 3]).position - vertex(element.vertices[i]).position;
+    sides[i] = vertex(corners[(i + 1) % 3]).position - vertex(corners[i]).position;
     lengths[i] = sides[i].norm();
   }
   double largest = -1;
@@ -189,13 +188,22 @@ double smallest_angle_cosine(const Element_set::Element& element, const VertexAc
   return largest;
 }
 
+// The same of a face. Angles of quads are nothing that anybody asks about here: -1 there.
+template <typename VertexAccess>
+double smallest_angle_cosine(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  return mesh.degree(f) == 3
+           ? smallest_angle_cosine(&mesh.corner_vertex[mesh.face_begin[f]], vertex)
+           : -1;
+}
+
 // Figures of the whole mesh. Sums run in the order of the faces, block by block.
 struct Global_measure
 {
   double energy = 0;        // sum of densities
   double capped_energy = 0; // the same, each density capped
   double worst = 0;         // largest density of an element that is not inverted
-  double sharpest = -1;     // largest cosine of an angle of an element
+  double sharpest = -1;     // largest cosine of an angle of a triangle with an element
   std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
   std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
@@ -230,8 +238,9 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
         m.capped_energy += (std::min)(d, cap);
         if(J.determinant() > 0)
           m.worst = (std::max)(m.worst, d);
-        m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(state.elements[e], vertex));
       }
+      if(state.elements.begin(f) < state.elements.end(f))
+        m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(mesh, vertex, f));
     }
   });
   Global_measure sum;

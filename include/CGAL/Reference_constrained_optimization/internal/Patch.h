@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -36,10 +37,12 @@ struct Patch
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   double caution = 0;                         // see Optimization_state
-  std::vector<char> bounds_turn;              // per face; empty if no face's turn is bounded
+  // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
+  std::vector<char> bounds_turn, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
-  double initial_angles = 0; // of the input: sum of the elements' smallest, in degrees; 0: of no matter
+  // by how much the sum of the faces' smallest angles may fall, in degrees
+  double angle_allowance = std::numeric_limits<double>::infinity();
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -139,6 +142,8 @@ public:
         }
         ++corners_in_patch[m_local[v]];
         corners.push_back(m_local[v]);
+        if(!state.is_smooth.empty())
+          patch.is_smooth.push_back(state.is_smooth[c]);
         const int o = mesh.opposite[c];
         const int g = o < 0 ? -1 : mesh.corner_face[o];
         const bool is_inside = g >= 0 && m_face_stamp[g] == m_stamp;
@@ -152,14 +157,15 @@ public:
         for(int& v : element.vertices)
           v = m_local[v];
         patch.elements.push_back(element);
-        if(!state.initial_angles.empty())
-          patch.initial_angles += state.initial_angles[e];
       }
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
       if(!state.bounds_turn.empty())
         patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
+    if(state.guards_angles && !state.bounds_turn.empty() && state.bounds_turn[faces.front()])
+      patch.angle_allowance = (std::max)(0., state.angle_surplus) * double(faces.size()) /
+                              double(mesh.number_of_faces());
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);

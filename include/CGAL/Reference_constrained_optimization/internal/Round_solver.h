@@ -146,6 +146,8 @@ private:
       m_result.overlapping_flattenings += s.overlaps;
       m_result.sum_of_flattening_distortion += s.distortion;
     }
+    if(s.decision.accepted)
+      m_state.angle_surplus += s.decision.after.angles - s.decision.before.angles;
     m_result.number_of_accepted_patches += s.decision.accepted;
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
     if(s.was_tried && !s.is_flattened)

@@ -8,7 +8,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/Drift_tracker.h>
 #include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_turn.h>
-#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 #include <CGAL/Reference_constrained_optimization/internal/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/step_field.h>
 
@@ -26,7 +25,7 @@ struct Patch_measure
 {
   double energy = 0;
   double drift_energy = 0;  // what the drift barrier adds
-  double angles = 0; // sum of the elements' smallest, in degrees, where their mean may not fall
+  double angles = 0; // sum of the faces' smallest, in degrees, where their mean may not fall
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -86,6 +85,8 @@ public:
       decision.before = m_accepted;
       std::swap(m_before, m_after);
     }
+    if(is_first)
+      m_least_angles = decision.before.angles - patch.angle_allowance;
     m_after = m_before;
     forget_offenders();
     m_steps.start(patch);
@@ -107,8 +108,9 @@ public:
       const bool exceeds = find_offenders(patch, decision.before);
       const int defects = decision.after.defects() - decision.before.defects();
       const bool falls = decision.after.has_fallen_from(decision.before);
-      const double least_angles = (std::min)(decision.before.angles, patch.initial_angles);
-      const bool keeps_angles = defects < 0 || decision.after.angles >= least_angles;
+      // a defect that is mended may cost
+      const double price = 60. * (std::max)(0, -defects);
+      const bool keeps_angles = decision.after.angles >= m_least_angles - price;
       if(m_limits.accepts_all ||
          (!exceeds && keeps_angles && (defects < 0 || (defects == 0 && falls))))
       {
@@ -150,7 +152,7 @@ private:
     std::vector<char> flipped;     // per face: turned over, or a quad that is not convex
     std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
-    std::vector<double> cosines;   // per element: cosine of its smallest angle
+    std::vector<double> cosines;   // per face: cosine of its smallest angle
     // where the turn of faces is bounded: cosines per face of its turn against R, and per corner of that
     // of its edge, at the first of the two
     std::vector<double> turns, edge_turns;
@@ -168,7 +170,7 @@ private:
     m_before.flipped.resize(n);
     m_before.folded.assign(patch.polygons.number_of_corners(), 0);
     m_before.densities.resize(patch.elements.size());
-    m_before.cosines.resize(patch.elements.size());
+    m_before.cosines.resize(n);
     m_before.turns.assign(patch.bounds_turn.size(), 1);
     m_before.edge_turns.assign(patch.bounds_turn.empty() ? 0 : patch.outside_face.size(), 1);
     m_is_changed.assign(n, 0);
@@ -197,10 +199,8 @@ private:
         details.turns[f] =
           face_turn_cosine(mesh, *m_reference, vertex, f, details.normals[f]);
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
-      {
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
-        details.cosines[e] = smallest_angle_cosine(patch.elements[e], vertex);
-      }
+      details.cosines[f] = smallest_angle_cosine(mesh, vertex, f);
     }
     for(const int f : m_changed)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -230,7 +230,7 @@ private:
     Patch_measure m;
     for(const double d : details.densities)
       m.energy += d;
-    if(patch.initial_angles > 0)
+    if(std::isfinite(patch.angle_allowance))
       for(const double c : details.cosines)
         m.angles += degrees(c);
     for(const char flipped : details.flipped)
@@ -284,18 +284,26 @@ private:
       }
     for(std::size_t e = 0; e < patch.elements.size(); ++e)
     {
-      const double d = m_after.densities[e], cosine = m_after.cosines[e];
-      if((d > m_limits.worst && d > m_before.densities[e]) ||
-         (cosine > m_limits.sharpest && cosine > m_before.cosines[e]))
+      const double d = m_after.densities[e];
+      if(d > m_limits.worst && d > m_before.densities[e])
       {
         exceeds = true;
         add_element(patch, e);
       }
     }
-    static const double cosine_of_turn = std::cos(knob("RCO_TURN", 20) / degrees_per_radian);
-    static const double cosine_of_edge_turn = std::cos(knob("RCO_ET", 38) / degrees_per_radian);
+    for(int f = 0; f < mesh.number_of_faces(); ++f)
+    {
+      const double cosine = m_after.cosines[f];
+      if(cosine > m_limits.sharpest && cosine > m_before.cosines[f])
+      {
+        exceeds = true;
+        add_face(mesh, f);
+      }
+    }
+    const double cosine_of_turn = 0.906, cosine_of_edge_turn = 0.788; // 25 and 38 degrees
     for(std::size_t c = 0; c < m_after.edge_turns.size(); ++c)
-      if(m_after.edge_turns[c] < cosine_of_edge_turn && m_after.edge_turns[c] < m_before.edge_turns[c])
+      if(patch.is_smooth[c] && m_after.edge_turns[c] < cosine_of_edge_turn &&
+         m_after.edge_turns[c] < m_before.edge_turns[c])
       {
         exceeds = true;
         add_face(mesh, mesh.corner_face[c]);
@@ -341,13 +349,13 @@ private:
     }
   }
 
-  // where the mean of angles falls below the input's: the elements whose angles fall
+  // where the mean of angles falls below the input's: the faces whose angles fall
   void find_sharper(const Patch& patch)
   {
     const double little = 0.1; // degrees
-    for(std::size_t e = 0; e < patch.elements.size(); ++e)
-      if(degrees(m_after.cosines[e]) < degrees(m_before.cosines[e]) - little)
-        add_element(patch, e);
+    for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
+      if(degrees(m_after.cosines[f]) < degrees(m_before.cosines[f]) - little)
+        add_face(patch.polygons, f);
   }
 
   static double degrees(double cosine)
@@ -428,6 +436,7 @@ private:
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
+  double m_least_angles = 0; // their sum, after all proposals for a patch
   std::vector<int> m_changed; // faces to be measured
   std::vector<char> m_is_changed, m_is_offender;
   std::vector<int> m_offenders; // vertices

@@ -7,22 +7,21 @@
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/active_set.h>
-#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Where a few elements that nothing can open own the sum, an exponential energy falls at the cost of all
-// the others. So its exponent starts mild, and becomes steeper, up to what is asked for, as long as
-// the worst elements own no more than a part of the energy.
+// Where slivers that nothing can open own the sum, an exponential energy falls at the cost of all the other
+// elements. So its exponent starts mild where there are many, and becomes steeper, up to what is asked
+// for, once they own no more than a part of the energy. Other densities are left as they are.
 template <typename Density>
 struct Exponent_continuation
 {
@@ -43,12 +42,12 @@ struct Exponent_continuation<Exponential_MIPS_density>
 {
   explicit Exponent_continuation(const Exponential_MIPS_density& density)
     : m_target(density),
-      m_density((std::min)(density.exponent_factor(), mildest()))
+      m_density(density.exponent_factor() > mildest ? milder(mildest) : density)
   {}
 
   const Exponential_MIPS_density& density() const { return m_density; }
 
-  // to the steepest exponent that is no matter of a few elements; false if that is what there is
+  // to the steepest exponent that slivers do not own; false if that is what there is
   template <typename ConcurrencyTag>
   bool advance(const Optimization_state& state)
   {
@@ -58,11 +57,8 @@ struct Exponent_continuation<Exponential_MIPS_density>
     {
       const double next = m_density.exponent_factor() * step, rounding = 1e-9;
       const Exponential_MIPS_density steeper =
-        next > (1 - rounding) * m_target.exponent_factor() ? m_target
-                                                            : Exponential_MIPS_density(next);
-      const double own = imbalance<ConcurrencyTag>(state, steeper);
-      if(std::getenv("RCO_V")) fprintf(stderr, "  k %.3g imbalance %.3g\n", steeper.exponent_factor(), own);
-      if(own > knob("RCO_OWN", 20))
+        next > (1 - rounding) * m_target.exponent_factor() ? m_target : milder(next);
+      if(imbalance<ConcurrencyTag>(state, steeper) > largest_imbalance)
         break;
       m_density = steeper;
       advances = true;
@@ -71,7 +67,13 @@ struct Exponent_continuation<Exponential_MIPS_density>
   }
 
 private:
-  static double mildest() { return knob("RCO_K0", 0.1); }
+  static constexpr double mildest = 0.1, largest_imbalance = 20;
+
+  // with the cap at the same shape as that of the exponent factor 1
+  static Exponential_MIPS_density milder(double factor)
+  {
+    return Exponential_MIPS_density(factor, 20 * factor);
+  }
 
   // the mean density of the elements, but for the worst of them, over that of the better half
   template <typename ConcurrencyTag>
@@ -91,17 +93,16 @@ private:
     densities.erase(std::remove(densities.begin(), densities.end(), none), densities.end());
     if(densities.empty())
       return 1;
-    std::sort(densities.begin(), densities.end());
-    const double trimmed = knob("RCO_TRIM", 0.02);
-    const std::size_t half = (densities.size() + 1) / 2, most = (std::max)(half, std::size_t((1 - trimmed) * densities.size()));
-    double sum = 0, half_sum = 0;
-    for(std::size_t i = 0; i < most; ++i)
-    {
-      sum += densities[i];
-      if(i + 1 == half)
-        half_sum = sum;
-    }
-    return sum / most / (half_sum / half);
+    const double trimmed = 0.02;
+    const std::size_t half = (densities.size() + 1) / 2;
+    const std::size_t most =
+      (std::max)(half, std::size_t((1 - trimmed) * double(densities.size())));
+    const auto begin = densities.begin();
+    std::nth_element(begin, begin + (most - 1), densities.end());
+    std::nth_element(begin, begin + (half - 1), begin + most);
+    const double half_sum = std::accumulate(begin, begin + half, 0.);
+    const double sum = std::accumulate(begin + half, begin + most, half_sum);
+    return sum / double(most) / (half_sum / double(half));
   }
 
   const Exponential_MIPS_density& m_target;

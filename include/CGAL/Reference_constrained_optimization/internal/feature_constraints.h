@@ -84,6 +84,23 @@ inline std::vector<char> faces_on(const Optimization_state& state,
   return result;
 }
 
+// the corners of the mesh at whose edges it turns by less than 20 degrees
+inline std::vector<char> smooth_edges(const Optimization_state& state)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const double cosine_of_turn = 0.94;
+  std::vector<char> result(mesh.number_of_corners(), 0);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(mesh.opposite[c] > c)
+    {
+      const Vector_3 a = face_normal(mesh, vertex, mesh.corner_face[c]),
+                     b = face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]);
+      result[c] = result[mesh.opposite[c]] = a.dot(b) >= cosine_of_turn * a.norm() * b.norm();
+    }
+  return result;
+}
+
 // Of a mesh that is not R itself, the edges that trace feature lines of R: sharp ones, whose ends and
 // middle lie at such lines. Per corner.
 inline std::vector<char> traced_features(const Indexed_mesh& mesh,

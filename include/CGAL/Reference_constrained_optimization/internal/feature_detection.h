@@ -8,7 +8,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/local_bounds.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +36,7 @@ struct Feature_evidence
   }
   bool is_mechanical() const
   {
-    const double enough = 0.25, crisp = 0.92, sharp = knob("RCO_SHARP", 0.65);
+    const double enough = 0.25, crisp = 0.92, sharp = 0.65;
     return amount() > enough && (crisp_share() > crisp || sharp_share() > sharp);
   }
 };

@@ -330,10 +330,10 @@ private:
   double smallest_angle(int f) const
   {
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
-    double cosine = -1;
-    for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
-      cosine = (std::max)(cosine, smallest_angle_cosine(m_state.elements[e], vertex));
-    return degrees_per_radian * std::acos((std::min)(1., cosine));
+    if(m_state.elements.begin(f) == m_state.elements.end(f))
+      return 180; // it is none of the stage's
+    return degrees_per_radian *
+           std::acos((std::min)(1., smallest_angle_cosine(m_state.mesh, vertex, f)));
   }
 
   void measure_all()

@@ -8,9 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
-#include <limits>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -19,24 +17,18 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-inline double knob(const char* name, double value)
-{
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : value;
-}
-
-// How far a mesh may be from R at each vertex of it: the default bound, but no more than a part of what is
-// there. On mechanical parts, where small holes lie among large faces, that is the shortest edge, on
-// scans, where single short edges mean nothing, the mean of the edges. Between vertices bounds grow no
-// faster than the distance times a grading.
+// How far a mesh may be from R at each vertex of R: the default bound, but no more than a part of the size
+// of what is there. On mechanical parts, where small holes lie among large faces, that is the shortest
+// edge, and the default is a fifth of that for scans; on scans, where single short edges mean nothing, the
+// longest edge within two rings. Between vertices bounds grow no faster than a part of the distance.
+// Lengths are meant for a default bound of a quarter of the mean edge.
 inline std::vector<double> local_bounds(const Reference_surface& reference,
                                         const std::vector<char>& is_mechanical,
                                         double default_bound)
 {
   const double scale = default_bound / (0.25 * reference.mean_edge_length());
-  const double mechanical_bound = knob("RCO_MB", 0.2) * default_bound, shortest_part = scale * knob("RCO_MS", 0.5), mean_part = scale * knob("RCO_LB", 0.5);
-  const double grading = knob("RCO_GR", 0.5);
-  const double floor = knob("RCO_FL", 0.02) * default_bound;
+  const double shortest_part = 0.5 * scale, longest_part = 0.35 * scale, grading = 0.5 * scale;
+  const double mechanical_bound = 0.2 * default_bound, least = 0.02 * default_bound;
   const Indexed_mesh& mesh = reference.mesh();
   const std::vector<Vector_3>& points = reference.points();
   const int n = mesh.number_of_vertices();
@@ -51,21 +43,31 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
         visit(w, (points[w] - points[v]).norm());
     }
   };
+  std::vector<double> longest(n, 0);
+  for(int v = 0; v < n; ++v)
+    for_each_neighbour(v, [&](int, double length) { longest[v] = (std::max)(longest[v], length); });
+  // vertices that all but coincide are no detail
+  for(int ring = 0; ring < 2; ++ring)
+  {
+    const std::vector<double> before = longest;
+    for(int v = 0; v < n; ++v)
+      for_each_neighbour(
+        v, [&](int w, double) { longest[v] = (std::max)(longest[v], before[w]); });
+  }
   for(int v = 0; v < n; ++v)
   {
     if(mesh.is_isolated(v))
       continue;
-    double shortest = std::numeric_limits<double>::infinity(), sum = 0;
-    int count = 0;
-    for_each_neighbour(v, [&](int, double length) {
-      shortest = length > 0 ? (std::min)(shortest, length) : shortest;
-      sum += length;
-      ++count;
-    });
-    const double bound = !is_mechanical.empty() && is_mechanical[mesh.face_at(v)]
-                           ? (std::min)(mechanical_bound, shortest_part * shortest)
-                           : (std::min)(default_bound, mean_part * sum / count);
-    bounds[v] = (std::max)(floor, bound);
+    double bound = (std::min)(default_bound, longest_part * longest[v]);
+    if(!is_mechanical.empty() && is_mechanical[mesh.face_at(v)])
+    {
+      double shortest = longest[v];
+      for_each_neighbour(v, [&](int, double length) {
+        shortest = length > 0 ? (std::min)(shortest, length) : shortest;
+      });
+      bound = (std::min)(mechanical_bound, shortest_part * shortest);
+    }
+    bounds[v] = (std::max)(least, bound);
     if(bounds[v] < default_bound)
       queue.push(Entry(bounds[v], v));
   }

@@ -7,7 +7,6 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
-#include <CGAL/Reference_constrained_optimization/internal/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
@@ -128,7 +127,7 @@ void optimize(const FaceRange& range,
                                surface_area(copy.mesh, mesh_points),
                                surface_area(surface.mesh(), reference_points));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
-  Element_set elements(energy, context, is_in_range, frame);
+  const Element_set elements(energy, context, is_in_range, frame);
   interruption.check();
   Optimization_state state{copy.mesh, surface,     elements,       {}, {}, {},
                            {},        is_in_range, frame.caution()};
@@ -152,6 +151,8 @@ void optimize(const FaceRange& range,
   check_distances(copy.points, state, frame);
   state.is_mechanical = std::move(features.is_mechanical);
   state.bounds_turn = faces_on(state, state.is_mechanical);
+  if(!state.bounds_turn.empty())
+    state.is_smooth = smooth_edges(state);
   // nothing of R would be closest to such a mesh
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
@@ -164,10 +165,6 @@ void optimize(const FaceRange& range,
     Sliding_vertices(state, constraints, lines, loop_parameters.relax_constraints,
                      frame.resolution(), result);
   }
-  if(prizes_angles(elements))
-    elements.set_aside(hopeless_faces(
-      copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; },
-      state.is_free));
   Caller_view view(frame, mesh_points, reference_points, state);
   view.remember_start();
   result.largest_initial_distance = view.largest_distance();

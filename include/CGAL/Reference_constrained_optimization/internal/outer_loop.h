@@ -105,8 +105,8 @@ private:
     m_limits.sharpest = before.sharpest;
     m_initial_energy = energy_of_caller();
 
-    if(m_prizes_angles)
-      remember_angles();
+    m_state.guards_angles = m_prizes_angles;
+    m_initial_angles = sum_of_angles();
     m_interruption.check();
     m_round_solver.initialize(make_drift_guard());
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
@@ -141,19 +141,19 @@ private:
     return now;
   }
 
-  void remember_angles()
+  // of the faces whose turn is bounded, in degrees
+  double sum_of_angles() const
   {
+    const Indexed_mesh& mesh = m_state.mesh;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
-    m_state.initial_angles.resize(m_state.elements.size());
-    for_each_block<ConcurrencyTag>(m_state.elements.size(), [&](int begin, int end, int) {
-      for(int e = begin; e < end; ++e)
-      {
-        const double cosine = smallest_angle_cosine(m_state.elements[e], vertex);
-        m_state.initial_angles[e] =
-          float(degrees_per_radian * std::acos((std::min)(1., cosine)));
-      }
-    });
+    double sum = 0;
+    for(int f = 0; f < int(m_state.bounds_turn.size()); ++f)
+      if(m_state.bounds_turn[f])
+        sum += degrees_per_radian *
+               std::acos((std::min)(1., smallest_angle_cosine(mesh, vertex, f)));
+    return sum;
   }
+  void count_angles() { m_state.angle_surplus = sum_of_angles() - m_initial_angles; }
 
   Drift_barrier make_barrier() const
   {
@@ -230,6 +230,7 @@ private:
     {
       m_visitor.on_iteration_begin(i);
       m_round_solver.begin_iteration();
+      count_angles();
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
@@ -419,6 +420,7 @@ private:
       stage.run(
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
           saved.add(faces.list);
+          count_angles();
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
           return visit_regions(
@@ -511,6 +513,7 @@ private:
   double m_cap = 0;
   double m_rest_energy = 0;
   double m_initial_energy = 0;
+  double m_initial_angles = 0; // their sum
 };
 
 } // namespace internal
