@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/detect_features.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
@@ -102,6 +103,20 @@ namespace CGAL {
  *                    `bool` as value type}
  *     \cgalParamDefault{no edge is constrained}
  *   \cgalParamNEnd
+ *   \cgalParamNBegin{detect_features}
+ *     \cgalParamDescription{whether the feature edges of the reference are detected, see
+ *                           `Reference_constrained_optimization::detect_features()`, and kept. Vertices of
+ *                           edges of `mesh` that lie along them slide along them; ends, junctions and
+ *                           turns of a line by more than 60 degrees stay. On components of the reference
+ *                           that are mechanical parts faces are kept from turning away from it by more
+ *                           than 25 degrees, edges that turn by less than 20 degrees from turning by more
+ *                           than 38, the drift bound is a fifth of what it is elsewhere, and, for
+ *                           energies that prize angles, the mean of the smallest angles of the faces does not
+ *                           fall. No feature is detected where `edge_is_constrained_map` is given, for
+ *                           `mesh` or for `reference`}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`true`}
+ *   \cgalParamNEnd
  *   \cgalParamNBegin{developability_threshold}
  *     \cgalParamDescription{\f$ \epsilon_d \f$: a face joins a patch only if its cost
  *                           \f$ (\langle n_p, n_t \rangle - \cos\theta_p)^2 \f$ in the patch's cone
@@ -119,8 +134,10 @@ namespace CGAL {
  *                           Infinity switches the barrier off}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{a quarter of the reference's mean edge length, or, if that is larger, what
- *                       allows as much as the input has (`Result::drift_bound` tells); infinity
- *                       if `use_on_surface_steps` is `false`}
+ *                       allows as much as the input has (`Result::drift_bound` tells), but less where the
+ *                       reference is finer: 0.35 of the longest edge within two rings, and, on
+ *                       mechanical parts (see `detect_features`), a fifth of the bound and half
+ *                       the shortest edge there; infinity if `use_on_surface_steps` is `false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the optimization comes to rest when an outer iteration lowers the energy by

@@ -32,21 +32,23 @@ RCO::Result optimize(Mesh& mesh,
                      const Options& options)
 {
   Progress progress(options);
-  Sharp_edges sharp(mesh, options.sharp_edges), reference_sharp(reference, options.sharp_edges);
   const auto call = [&](const auto& own_parameters) {
     const auto np = own_parameters.number_of_iterations(options.number_of_iterations)
                       .random_seed(options.random_seed)
                       .maximum_running_time(options.maximum_running_time)
                       .relax_constraints(options.relax_constraints)
-                      .edge_is_constrained_map(sharp.map())
                       .visitor(std::ref(progress));
+    if(!(options.sharp_edges < 180))
+      return CGAL::reference_constrained_optimize<Concurrency_tag>(mesh, reference, energy, np);
+    Sharp_edges sharp(mesh, options.sharp_edges), reference_sharp(reference, options.sharp_edges);
     return CGAL::reference_constrained_optimize<Concurrency_tag>(
-      mesh, reference, energy, np,
+      mesh, reference, energy, np.edge_is_constrained_map(sharp.map()),
       CGAL::parameters::edge_is_constrained_map(reference_sharp.map()));
   };
   const auto own = CGAL::parameters::energy_tolerance(options.energy_tolerance)
                      .developability_threshold(options.developability_threshold)
                      .maximum_patch_size(options.maximum_patch_size)
+                     .detect_features(options.detects_features)
                      .use_on_surface_steps(options.use_on_surface_steps)
                      .use_finishing_stage(options.use_finishing_stage);
   return drift_bound < 0 ? call(own) : call(own.drift_bound(drift_bound));

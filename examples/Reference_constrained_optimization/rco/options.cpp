@@ -121,6 +121,26 @@ void check(bool holds, const char* option, const char* condition)
     refuse(std::string(option) + " must be " + condition);
 }
 
+void read_sharp_edges(const std::string& text, Options& options)
+{
+  options.detects_features = text == "auto";
+  options.sharp_edges = 180;
+  if(text == "auto" || text == "none")
+    return;
+  std::size_t used = 0;
+  double degrees = -1;
+  try
+  {
+    degrees = std::stod(text, &used);
+  }
+  catch(const std::logic_error&)
+  {}
+  if(used == 0 || used != text.size() || !(degrees >= 0 && degrees <= 180))
+    refuse("--sharp-edges must be auto, none or an angle from 0 to 180 degrees, not '" + text +
+           "'");
+  options.sharp_edges = degrees;
+}
+
 Drift_bound read_drift_bound(std::string text)
 {
   const std::string given = text;
@@ -145,7 +165,7 @@ class Option_reader
 {
   Options& m_options;
   Whole_numbers m_whole;
-  std::string m_drift_bound, m_energy = "regularity";
+  std::string m_drift_bound, m_sharp_edges = "auto", m_energy = "regularity";
   std::vector<std::string> m_files;
   po::options_description m_own, m_common{"Parameters, named as in the library", 100, 50},
     m_output{"Output", 100, 50}, m_hidden;
@@ -194,11 +214,13 @@ class Option_reader
     add("energy-tolerance", number(o.energy_tolerance),
         "a rest once an iteration gains less than this part; default: 0.004");
     add("random-seed", count(m_whole.random_seed), "default: 0");
-    add("sharp-edges", number(o.sharp_edges),
-        "edges where the surface turns by more than X degrees are constrained: their vertices do "
-        "not move");
+    add(
+      "sharp-edges", text(m_sharp_edges, "S"),
+      "auto: those of mechanical parts are detected, and vertices slide along them; none: none are "
+      "kept; X: edges where the surface turns by more than X degrees are constrained, and their "
+      "vertices do not move; default: auto");
     add("relax-constraints", po::bool_switch(&o.relax_constraints),
-        "vertices on sharp edges and on borders slide along them");
+        "vertices on edges constrained by an angle, and on borders, slide along them");
     add("use-finishing-stage", yes_or_no(o.use_finishing_stage),
         "whether the smallest angles are raised in the end; default: true");
     add("use-on-surface-steps", yes_or_no(o.use_on_surface_steps),
@@ -250,8 +272,7 @@ class Option_reader
     check(o.maximum_running_time > 0, "--maximum-running-time", "positive");
     check(o.energy_tolerance >= 0, "--energy-tolerance", "zero or more");
     check(o.developability_threshold > 0, "--developability-threshold", "positive");
-    check(o.sharp_edges >= 0 && o.sharp_edges <= 180, "--sharp-edges",
-          "an angle from 0 to 180 degrees");
+    read_sharp_edges(m_sharp_edges, o);
     check(o.exponent_factor > 0 && std::isfinite(o.exponent_factor), "--exponent-factor",
           "positive");
     check(o.leg_length_factor > 0 && std::isfinite(o.leg_length_factor), "--leg-length-factor",

@@ -33,7 +33,8 @@ struct Options
   Drift_bound drift_bound;
   bool use_on_surface_steps = true, use_finishing_stage = true;
 
-  double sharp_edges = 180; // edges that turn by more degrees are constrained
+  bool detects_features = true; // those of mechanical parts; else
+  double sharp_edges = 180;     // edges that turn by more degrees are constrained
   bool relax_constraints = false;
 
   double exponent_factor = 1;     // angle

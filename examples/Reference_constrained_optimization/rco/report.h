@@ -107,6 +107,7 @@ inline void print_json(std::ostream& out, const Options& options, const Report& 
       << ",\n  \"number_of_vertices\": " << report.number_of_vertices
       << ",\n  \"number_of_faces\": " << report.number_of_faces
       << ",\n  \"number_of_free_vertices\": " << r.number_of_free_vertices
+      << ",\n  \"number_of_feature_edges\": " << r.number_of_feature_edges
       << ",\n  \"before\": " << json_object(report.before)
       << ",\n  \"after\": " << json_object(report.after)
       << ",\n  \"initial_energy\": " << json_number(r.initial_energy)
@@ -145,6 +146,9 @@ inline void print_table(std::ostream& out, const Options& options, const Report&
     out << std::setprecision(a.digits) << std::left << std::setw(label) << a.label << std::right
         << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
   }
+  if(options.detects_features)
+    out << std::left << std::setw(label) << "feature edges kept" << std::right
+        << std::setw(2 * column) << r.number_of_feature_edges << '\n';
   out << std::setprecision(2) << text_of(report.verdict) << " (" << name(r.status)
       << "): " << r.number_of_iterations << " iterations, " << r.running_time << " seconds";
   if(!options.output.empty())

@@ -36,7 +36,7 @@ struct Patch
   std::vector<std::array<int, 2>> line_neighbours;
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
-  double caution = 0;                         // see Optimization_state
+  double caution = 0; // see Optimization_state
   // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
   std::vector<char> bounds_turn, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
@@ -59,7 +59,8 @@ struct Patch
   // mesh, known where the barrier is felt.
   Drift_barrier barrier;
   double drift_bound = 0;
-  const std::vector<double>* local_bounds = nullptr; // per triangle of R, if it is not the same everywhere
+  const std::vector<double>* local_bounds =
+    nullptr;                        // per triangle of R, if it is not the same everywhere
   std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
   // of a sample of a triangle of the patch whose closest point is in a triangle of R
   double bound_of(int triangle, int reference_face) const
@@ -164,8 +165,8 @@ public:
     }
     patch.element_begin.push_back(int(patch.elements.size()));
     if(state.guards_angles && !state.bounds_turn.empty() && state.bounds_turn[faces.front()])
-      patch.angle_allowance = (std::max)(0., state.angle_surplus) * double(faces.size()) /
-                              double(mesh.number_of_faces());
+      patch.angle_allowance =
+        (std::max)(0., state.angle_surplus) * double(faces.size()) / double(mesh.number_of_faces());
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);

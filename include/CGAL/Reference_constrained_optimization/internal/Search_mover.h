@@ -188,7 +188,8 @@ private:
   {
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_placed[v]; };
     return element_energy(density, element, vertex) > m_bad ||
-           (!element.is_in_quad && smallest_angle_cosine(element.vertices.data(), vertex) > m_sharp);
+           (!element.is_in_quad &&
+            smallest_angle_cosine(element.vertices.data(), vertex) > m_sharp);
   }
 
   // The vertices of bad elements, and those around them, one by one; then two and three of the same bad

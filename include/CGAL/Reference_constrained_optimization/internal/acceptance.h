@@ -25,7 +25,7 @@ struct Patch_measure
 {
   double energy = 0;
   double drift_energy = 0;  // what the drift barrier adds
-  double angles = 0; // sum of the faces' smallest, in degrees, where their mean may not fall
+  double angles = 0;        // sum of the faces' smallest, in degrees, where their mean may not fall
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -196,8 +196,7 @@ private:
       details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f], patch.caution) +
                                 is_nonconvex(mesh, vertex, f));
       if(!patch.bounds_turn.empty() && patch.bounds_turn[f])
-        details.turns[f] =
-          face_turn_cosine(mesh, *m_reference, vertex, f, details.normals[f]);
+        details.turns[f] = face_turn_cosine(mesh, *m_reference, vertex, f, details.normals[f]);
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
       details.cosines[f] = smallest_angle_cosine(mesh, vertex, f);
@@ -206,7 +205,8 @@ private:
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       {
         const int o = mesh.opposite[c];
-        if(!patch.bounds_turn.empty() && patch.bounds_turn[f] && (o >= 0 || patch.outside_face[c] >= 0))
+        if(!patch.bounds_turn.empty() && patch.bounds_turn[f] &&
+           (o >= 0 || patch.outside_face[c] >= 0))
           details.edge_turns[o >= 0 ? (std::min)(c, o) : c] =
             cosine(details.normals[f],
                    o >= 0 ? details.normals[mesh.corner_face[o]] : m_outside_normal[c]);
@@ -436,7 +436,7 @@ private:
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
-  double m_least_angles = 0; // their sum, after all proposals for a patch
+  double m_least_angles = 0;  // their sum, after all proposals for a patch
   std::vector<int> m_changed; // faces to be measured
   std::vector<char> m_is_changed, m_is_offender;
   std::vector<int> m_offenders; // vertices

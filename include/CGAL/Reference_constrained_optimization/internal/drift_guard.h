@@ -347,8 +347,9 @@ private:
 
   Drift_barrier m_barrier;
   double m_bound = 0, m_initial_drift = 0;
-  std::vector<double> m_local_bounds;   // per triangle of R; empty if all are the bound
-  std::vector<double> m_least_bounds;   // per face of the mesh: what it has from the start; may be empty
+  std::vector<double> m_local_bounds; // per triangle of R; empty if all are the bound
+  std::vector<double>
+    m_least_bounds; // per face of the mesh: what it has from the start; may be empty
   std::vector<double> m_witness_bounds; // per witness; empty if all are the bound
   std::vector<Known> m_known; // four per face if all are triangles; no less than the true distance
   // the guests of every face are a list: the first one, and the next one after each witness

@@ -23,8 +23,8 @@ namespace internal {
 struct Feature_evidence
 {
   double area = 0;
-  double sharp_length = 0;  // of edges that turn by more than 40 degrees
-  double crisp_length = 0;  // of those beside which the surface turns by less than a third of that
+  double sharp_length = 0; // of edges that turn by more than 40 degrees
+  double crisp_length = 0; // of those beside which the surface turns by less than a third of that
   std::size_t sharp_edges = 0, turned_edges = 0; // that turn by more than 40, 20 degrees
 
   // without unit; lines that are short against the size of a component say nothing about it
@@ -43,8 +43,9 @@ struct Feature_evidence
 
 struct Detected_features
 {
-  std::vector<char> is_feature;    // per corner of the surface's triangles, at both sides of an edge
-  std::vector<char> is_mechanical; // per triangle: whether it is of a mechanical part; empty if none is
+  std::vector<char> is_feature; // per corner of the surface's triangles, at both sides of an edge
+  std::vector<char>
+    is_mechanical; // per triangle: whether it is of a mechanical part; empty if none is
   std::size_t number_of_edges = 0;
   // of the largest component that is a part; if none is, of the largest one
   Feature_evidence evidence;
@@ -116,7 +117,7 @@ private:
       e.area += 0.5 * m_surface.face_normal(f).norm();
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
       {
-        if(m_mesh.opposite[c] < c || !(m_turn[c] > small_turn))
+        if(m_mesh.opposite[c] < c || !(m_turn[c] > small_turn) || is_fold(c))
           continue;
         ++e.turned_edges;
         if(!(m_turn[c] > sharp_turn))
@@ -124,11 +125,11 @@ private:
         ++e.sharp_edges;
         e.sharp_length += length(c);
         e.crisp_length += is_crisp(c) ? length(c) : 0;
-        if(!is_fold(c))
-          sharp.push_back(c);
+        sharp.push_back(c);
       }
     }
-    const bool was_mechanical = m_result.evidence.is_mechanical(), is_mechanical = e.is_mechanical();
+    const bool was_mechanical = m_result.evidence.is_mechanical(),
+               is_mechanical = e.is_mechanical();
     if(is_mechanical != was_mechanical ? is_mechanical : e.area > m_result.evidence.area)
       m_result.evidence = e;
     if(!is_mechanical)
@@ -185,10 +186,9 @@ private:
     }
     if(continuation != std::size_t(-1))
       m_beside.erase(m_beside.begin() + continuation);
-    m_beside.erase(
-      std::remove_if(m_beside.begin() + first, m_beside.end(),
-                     [&](double turn) { return turn >= 0.75 * m_turn[c]; }),
-      m_beside.end());
+    m_beside.erase(std::remove_if(m_beside.begin() + first, m_beside.end(),
+                                  [&](double turn) { return turn >= 0.75 * m_turn[c]; }),
+                   m_beside.end());
   }
 
   bool is_fold(int c) const
@@ -199,8 +199,8 @@ private:
   }
   bool is_reversed(int f) const
   {
-    return m_surface.face_normal(f).dot(m_surface.normal(
-             m_surface.point(f, Vector_3::Constant(1. / 3)))) < 0;
+    return m_surface.face_normal(f).dot(
+             m_surface.normal(m_surface.point(f, Vector_3::Constant(1. / 3)))) < 0;
   }
 
   const Reference_surface& m_surface;

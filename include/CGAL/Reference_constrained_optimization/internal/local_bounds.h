@@ -51,8 +51,7 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
   {
     const std::vector<double> before = longest;
     for(int v = 0; v < n; ++v)
-      for_each_neighbour(
-        v, [&](int w, double) { longest[v] = (std::max)(longest[v], before[w]); });
+      for_each_neighbour(v, [&](int w, double) { longest[v] = (std::max)(longest[v], before[w]); });
   }
   for(int v = 0; v < n; ++v)
   {

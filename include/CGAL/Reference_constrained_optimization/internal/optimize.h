@@ -133,9 +133,10 @@ void optimize(const FaceRange& range,
                            {},        is_in_range, frame.caution()};
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
-  const bool detects = loop_parameters.detect_features &&
-                       parameters::is_default_parameter<NamedParametersReference,
-                                                        CGAL::internal_np::edge_is_constrained_t>::value;
+  const bool detects =
+    loop_parameters.detect_features &&
+    parameters::is_default_parameter<NamedParametersReference,
+                                     CGAL::internal_np::edge_is_constrained_t>::value;
   Detected_features features;
   if(detects)
     features = Feature_detection(surface).take();

@@ -113,7 +113,8 @@ private:
 
     m_interruption.check();
     m_result.status = Status::iteration_limit;
-    if(m_prizes_angles && m_parameters.use_on_surface_steps && m_parameters.number_of_iterations > 0)
+    if(m_prizes_angles && m_parameters.use_on_surface_steps &&
+       m_parameters.number_of_iterations > 0)
     {
       if(!open_clusters())
         return;
@@ -149,8 +150,8 @@ private:
     double sum = 0;
     for(int f = 0; f < int(m_state.bounds_turn.size()); ++f)
       if(m_state.bounds_turn[f])
-        sum += degrees_per_radian *
-               std::acos((std::min)(1., smallest_angle_cosine(mesh, vertex, f)));
+        sum +=
+          degrees_per_radian * std::acos((std::min)(1., smallest_angle_cosine(mesh, vertex, f)));
     return sum;
   }
   void count_angles() { m_state.angle_surplus = sum_of_angles() - m_initial_angles; }

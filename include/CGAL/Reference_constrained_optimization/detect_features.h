@@ -1,0 +1,113 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_DETECT_FEATURES_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_DETECT_FEATURES_H
+
+#include <CGAL/Reference_constrained_optimization/internal/feature_constraints.h>
+#include <CGAL/Reference_constrained_optimization/internal/feature_detection.h>
+#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/named_parameters.h>
+
+#include <CGAL/boost/graph/iterator.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * tells what `detect_features()` found, and what decided: figures without unit of the connected component
+ * with the largest area among those that are mechanical parts, or among all if none is.
+ */
+struct Feature_report
+{
+  bool has_features = false;               ///< whether an edge was marked.
+  std::size_t number_of_feature_edges = 0; ///< edges that were marked.
+  /// length of the sharp edges (that turn by more than 40 degrees) over the square root of the area; up to
+  /// 0.25 there is too little to tell.
+  double amount_of_sharp_edges = 0;
+  /// the share of the length of sharp edges beside which the surface turns by less than a third of what
+  /// they do; above 0.92 it is a part.
+  double crisp_share = 0;
+  /// how many of the edges that turn by more than 20 degrees do so by more than 40; above 0.65 it is a
+  /// part.
+  double sharp_share = 0;
+};
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * marks the feature edges of a surface: the sharp edges of mechanical parts.
+ *
+ * On a mechanical part edges are either sharp or hardly turned at all, and sharp edges are lines with
+ * smooth ground on both sides; on a scan, an organic shape or a coarse mesh of one, edges turn by all
+ * angles, and sharp ones lie among others that are nearly as sharp. Each connected component is judged
+ * by itself, by the shares that `Feature_report` holds. Of a part all edges are features at which the
+ * surface turns by more than 40 degrees, but for folds: those that turn by more than 120 degrees and have
+ * a face that is turned against the sum of the normals at its vertices.
+ *
+ * `CGAL::reference_constrained_optimize()` calls it for the reference unless its parameter
+ * `detect_features` is `false` or the caller constrains edges.
+ *
+ * \tparam FaceGraph a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles and quads
+ * \tparam EdgeIsConstrainedMap a model of `WritablePropertyMap` with the edge descriptor of `FaceGraph`
+ *         as key type and `bool` as value type
+ * \tparam NamedParameters a sequence of \ref bgl_namedparameters "Named Parameters"
+ *
+ * \param mesh the surface
+ * \param edge_is_constrained_map receives `true` for every feature edge; other edges are not written.
+ * \param np the parameter `vertex_point_map`
+ *
+ * \return what was found.
+ *
+ * \throws Invalid_input if the mesh is empty, not manifold, without area, or has a coordinate that is not
+ *         finite.
+ */
+template <typename FaceGraph,
+          typename EdgeIsConstrainedMap,
+          typename NamedParameters = parameters::Default_named_parameters>
+Feature_report detect_features(const FaceGraph& mesh,
+                               EdgeIsConstrainedMap edge_is_constrained_map,
+                               const NamedParameters& np = parameters::default_values())
+{
+  typedef boost::graph_traits<FaceGraph> Graph_traits;
+  const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
+  const internal::Reference_surface surface(copy);
+  const internal::Detected_features features = internal::Feature_detection(surface).take();
+  const std::vector<char> is_feature =
+    internal::features_of_polygons(copy.mesh, surface, features.is_feature);
+  Feature_report report;
+  report.amount_of_sharp_edges = features.evidence.amount();
+  report.crisp_share = features.evidence.crisp_share();
+  report.sharp_share = features.evidence.sharp_share();
+  int f = 0;
+  for(const typename Graph_traits::face_descriptor face : faces(mesh))
+  {
+    // the half-edge to a corner's vertex starts at the corner before it
+    int c = copy.mesh.face_begin[f++];
+    for(const typename Graph_traits::halfedge_descriptor h :
+        CGAL::halfedges_around_face(halfedge(face, mesh), mesh))
+    {
+      const int before = copy.mesh.previous(c++);
+      if(is_feature[before])
+      {
+        put(edge_is_constrained_map, edge(h, mesh), true);
+        report.number_of_feature_edges += before < copy.mesh.opposite[before];
+      }
+    }
+  }
+  report.has_features = report.number_of_feature_edges > 0;
+  return report;
+}
+
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_DETECT_FEATURES_H
