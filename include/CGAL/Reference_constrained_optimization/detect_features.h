@@ -37,8 +37,10 @@ struct Feature_report
   /// they do; above 0.92 it is a part.
   double crisp_share = 0;
   /// how many of the edges that turn by more than 20 degrees do so by more than 40; above 0.65 it is a
-  /// part.
+  /// part, above 0.4 too if `turned_share` is below 0.25.
   double sharp_share = 0;
+  /// how many of all edges turn by more than 20 degrees.
+  double turned_share = 0;
 };
 
 /*!
@@ -87,6 +89,7 @@ Feature_report detect_features(const FaceGraph& mesh,
   report.amount_of_sharp_edges = features.evidence.amount();
   report.crisp_share = features.evidence.crisp_share();
   report.sharp_share = features.evidence.sharp_share();
+  report.turned_share = features.evidence.turned_share();
   int f = 0;
   for(const typename Graph_traits::face_descriptor face : faces(mesh))
   {

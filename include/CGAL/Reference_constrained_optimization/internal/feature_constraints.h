@@ -13,7 +13,11 @@
 
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace CGAL {
@@ -120,23 +124,31 @@ inline std::vector<char> traced_features(const Indexed_mesh& mesh,
     return result;
   Segment_tree<Kernel, Segment_iterator> tree(segments.begin(), segments.end());
   tree.accelerate_distance_queries();
-  const double cosine_of_turn = 0.94; // 20 degrees
+  const auto distance = [&](const Vector_3& x) {
+    return std::sqrt(tree.squared_distance(point(x)));
+  };
+  // vertices that are on a line already, up to rounding
+  std::vector<double> shortest(positions.size(), std::numeric_limits<double>::infinity());
   for(int c = 0; c < mesh.number_of_corners(); ++c)
   {
-    const int o = mesh.opposite[c];
-    if(o < c)
+    const double length = (positions[mesh.target(c)] - positions[mesh.source(c)]).norm();
+    for(const int v : {mesh.source(c), mesh.target(c)})
+      shortest[v] = (std::min)(shortest[v], length);
+  }
+  const double small_part = 0.01, sagitta = 0.1, cosine_of_turn = 0.94; // 20 degrees
+  std::vector<char> is_on_line(positions.size(), 0);
+  for(std::size_t v = 0; v < positions.size(); ++v)
+    is_on_line[v] = !mesh.is_isolated(int(v)) && distance(positions[v]) <= small_part * shortest[v];
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+  {
+    const int o = mesh.opposite[c], v = mesh.source(c), w = mesh.target(c);
+    if(o < c || !is_on_line[v] || !is_on_line[w])
       continue;
     const Vector_3 a = face_vector_area(mesh, positions, mesh.corner_face[c]),
                    b = face_vector_area(mesh, positions, mesh.corner_face[o]);
-    if(!(a.dot(b) < cosine_of_turn * a.norm() * b.norm()))
-      continue;
-    const Vector_3 &p = positions[mesh.source(c)], &q = positions[mesh.target(c)];
-    const double length = (p - q).norm(), at_end = 0.05 * length, in_middle = 0.1 * length;
-    const auto is_near = [&](const Vector_3& x, double distance) {
-      return tree.squared_distance(point(x)) <= distance * distance;
-    };
-    result[c] = result[o] =
-      is_near(p, at_end) && is_near(q, at_end) && is_near(0.5 * (p + q), in_middle);
+    const Vector_3 &p = positions[v], &q = positions[w];
+    result[c] = result[o] = a.dot(b) < cosine_of_turn * a.norm() * b.norm() &&
+                            distance(0.5 * (p + q)) <= sagitta * (p - q).norm();
   }
   return result;
 }

@@ -26,6 +26,7 @@ struct Feature_evidence
   double sharp_length = 0; // of edges that turn by more than 40 degrees
   double crisp_length = 0; // of those beside which the surface turns by less than a third of that
   std::size_t sharp_edges = 0, turned_edges = 0; // that turn by more than 40, 20 degrees
+  std::size_t edges = 0;
 
   // without unit; lines that are short against the size of a component say nothing about it
   double amount() const { return area > 0 ? sharp_length / std::sqrt(area) : 0; }
@@ -34,28 +35,32 @@ struct Feature_evidence
   {
     return turned_edges > 0 ? double(sharp_edges) / double(turned_edges) : 0;
   }
+  double turned_share() const { return edges > 0 ? double(turned_edges) / double(edges) : 0; }
+  // sharp edges are lines, or hardly any edge is turned that is not sharp, or few are and most edges are
+  // not turned at all
   bool is_mechanical() const
   {
-    const double enough = 0.25, crisp = 0.92, sharp = 0.65;
-    return amount() > enough && (crisp_share() > crisp || sharp_share() > sharp);
+    return amount() > 0.25 && (crisp_share() > 0.92 || sharp_share() > 0.65 ||
+                               (sharp_share() > 0.4 && turned_share() < 0.25));
   }
 };
 
 struct Detected_features
 {
-  std::vector<char> is_feature; // per corner of the surface's triangles, at both sides of an edge
-  std::vector<char>
-    is_mechanical; // per triangle: whether it is of a mechanical part; empty if none is
+  // per corner of the surface's triangles, at both sides of an edge
+  std::vector<char> is_feature;
+  // per triangle: whether it is of a mechanical part; empty if none is
+  std::vector<char> is_mechanical;
   std::size_t number_of_edges = 0;
   // of the largest component that is a part; if none is, of the largest one
   Feature_evidence evidence;
 };
 
-// The feature lines of a surface. On a mechanical part edges are sharp or not turned at all: sharp
-// ones are lines with smooth ground on both sides. On a scan sharp edges are
-// surrounded by edges that turn nearly as much, and there are many more that turn a little less.
-// Each connected component is judged by itself. Folds are no features: an edge with a face that is
-// turned against the surface's own vertex normals.
+// The feature lines of a surface: the sharp edges of mechanical parts. There edges are sharp or not turned
+// at all, and sharp ones are lines with smooth ground on both sides; on scans sharp edges are surrounded by
+// edges that turn nearly as much, and there are many more that turn a little less. Each connected
+// component is judged by itself. Folds are no features: edges where a face is turned against the
+// surface's own vertex normals.
 class Feature_detection
 {
 public:
@@ -117,7 +122,10 @@ private:
       e.area += 0.5 * m_surface.face_normal(f).norm();
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
       {
-        if(m_mesh.opposite[c] < c || !(m_turn[c] > small_turn) || is_fold(c))
+        if(m_mesh.opposite[c] < c)
+          continue;
+        ++e.edges;
+        if(!(m_turn[c] > small_turn) || is_fold(c))
           continue;
         ++e.turned_edges;
         if(!(m_turn[c] > sharp_turn))

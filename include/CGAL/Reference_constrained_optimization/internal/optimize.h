@@ -133,20 +133,21 @@ void optimize(const FaceRange& range,
                            {},        is_in_range, frame.caution()};
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
-  const bool detects =
-    loop_parameters.detect_features &&
-    parameters::is_default_parameter<NamedParametersReference,
-                                     CGAL::internal_np::edge_is_constrained_t>::value;
+  // a copy of the mesh is no other reference
+  const bool is_same =
+    is_own || (copy.points == other.points && copy.mesh.face_begin == other.mesh.face_begin &&
+               copy.mesh.corner_vertex == other.mesh.corner_vertex);
+  constexpr bool has_reference_lines =
+    !parameters::is_default_parameter<NamedParametersReference,
+                                      CGAL::internal_np::edge_is_constrained_t>::value;
   Detected_features features;
-  if(detects)
+  if(loop_parameters.detect_features && !has_reference_lines)
     features = Feature_detection(surface).take();
   interruption.check();
-  if(is_own)
-    constrain(features_of_polygons(copy.mesh, surface, features.is_feature), copy.mesh, constraints,
-              result);
-  else if(features.number_of_edges > 0)
-    constrain(traced_features(copy.mesh, copy.points, surface, features.is_feature), copy.mesh,
-              constraints, result);
+  if(features.number_of_edges > 0)
+    constrain(is_same ? features_of_polygons(copy.mesh, surface, features.is_feature)
+                      : traced_features(copy.mesh, copy.points, surface, features.is_feature),
+              copy.mesh, constraints, result);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
   check_distances(copy.points, state, frame);
@@ -161,7 +162,7 @@ void optimize(const FaceRange& range,
   {
     Reference_lines lines =
       read_reference_lines(reference, np_reference, reference_copy.mesh, surface);
-    if(!is_own && result.number_of_feature_edges > 0)
+    if(!is_same && result.number_of_feature_edges > 0)
       lines.set_features(feature_edges(surface.mesh(), features.is_feature));
     Sliding_vertices(state, constraints, lines, loop_parameters.relax_constraints,
                      frame.resolution(), result);
