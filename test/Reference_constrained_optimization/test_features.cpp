@@ -183,14 +183,14 @@ void test_keeping()
   // the caller's own lines
   Mesh mesh = make_mesh<Mesh>(start);
   const auto none = mesh.add_property_map<Mesh::Edge_index, bool>("e:none", false).first;
-  const RCO::Result r = CGAL::reference_constrained_optimize(
-    mesh, mesh, energy, params::edge_is_constrained_map(none));
+  const RCO::Result r =
+    CGAL::reference_constrained_optimize(mesh, mesh, energy, params::edge_is_constrained_map(none));
   RCO_CHECK_EQUAL(r.number_of_feature_edges, std::size_t(0));
 
   // of another reference
   Mesh other = make_mesh<Mesh>(start);
-  const RCO::Result traced = CGAL::reference_constrained_optimize(
-    other, make_mesh<Mesh>(jittered_cube(11, 0.2)), energy);
+  const RCO::Result traced =
+    CGAL::reference_constrained_optimize(other, make_mesh<Mesh>(jittered_cube(11, 0.2)), energy);
   RCO_CHECK_EQUAL(traced.number_of_feature_edges, std::size_t(12 * n));
   for(std::size_t v = 0; v < start.points.size(); ++v)
     RCO_CHECK_EQUAL(number_of_planes(start.points[v]),
@@ -206,8 +206,8 @@ void test_strips()
     {
       Shape start = closed_cylinder(columns, 1, 1, 3);
       for(int i = 0; i < columns; ++i) // a little uneven, so that there is something to do
-        start.points[i] = Eigen::AngleAxisd(0.3 * std::sin(7. * i) / columns, Vector_3::UnitZ()) *
-                          start.points[i];
+        start.points[i] =
+          Eigen::AngleAxisd(0.3 * std::sin(7. * i) / columns, Vector_3::UnitZ()) * start.points[i];
       const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(seed));
       RCO_CHECK_LESS_EQUAL(mean_smallest_angle(start), mean_smallest_angle(after.shape) + 1e-9);
       RCO_CHECK_LESS_EQUAL(smallest_angle(start), smallest_angle(after.shape));
@@ -238,7 +238,8 @@ void test_local_bounds()
     for(int c = 0; c < mesh.number_of_corners(); ++c)
     {
       const int v = mesh.source(c), w = mesh.target(c);
-      RCO_CHECK_LESS_EQUAL(bounds[v], bounds[w] + 0.51 * (shape.points[v] - shape.points[w]).norm());
+      RCO_CHECK_LESS_EQUAL(bounds[v],
+                           bounds[w] + 0.51 * (shape.points[v] - shape.points[w]).norm());
     }
   }
 }
