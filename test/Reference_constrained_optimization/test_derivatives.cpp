@@ -647,6 +647,7 @@ internal::Patch drifting_patch(const Shape& shape, const std::vector<char>& is_f
     if(internal::sample_of(patch, s / 4, s % 4) == s)
     {
       patch.samples[s].distance = random(0, 0.36);
+      patch.samples[s].bound = patch.drift_bound;
       patch.samples[s].direction = direction();
     }
   for(int f = 0; f < n; f += 2)
