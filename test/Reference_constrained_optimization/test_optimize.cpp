@@ -1010,11 +1010,13 @@ void test_drift(const std::string& name)
   {
     Mesh mesh = input;
     const RCO::Result result =
-      bound < 0 ? CGAL::reference_constrained_optimize(mesh, input, RCO::Minimum_angle_energy(),
-                                                       CGAL::parameters::number_of_iterations(5))
-                : CGAL::reference_constrained_optimize(
-                    mesh, input, RCO::Minimum_angle_energy(),
-                    CGAL::parameters::drift_bound(bound).number_of_iterations(5));
+      bound < 0
+        ? CGAL::reference_constrained_optimize(
+            mesh, input, RCO::Minimum_angle_energy(),
+            CGAL::parameters::detect_features(false).number_of_iterations(5))
+        : CGAL::reference_constrained_optimize(
+            mesh, input, RCO::Minimum_angle_energy(),
+            CGAL::parameters::drift_bound(bound).detect_features(false).number_of_iterations(5));
     const double drift = watched_drift(mesh, input);
     RCO_CHECK_LESS(result.final_energy, result.initial_energy);
     if(bound == infinity)
@@ -1036,7 +1038,7 @@ void test_drift(const std::string& name)
     // from there on with a smaller bound, nothing gets worse
     const RCO::Result again = CGAL::reference_constrained_optimize(
       mesh, input, RCO::Minimum_angle_energy(),
-      CGAL::parameters::drift_bound(0.05 * edge).number_of_iterations(2));
+      CGAL::parameters::drift_bound(0.05 * edge).detect_features(false).number_of_iterations(2));
     RCO_CHECK_LESS_EQUAL(again.drift, again.initial_drift * (1 + 1e-12));
     RCO_CHECK_LESS_EQUAL(watched_drift(mesh, input), again.initial_drift * (1 + 1e-12));
   }

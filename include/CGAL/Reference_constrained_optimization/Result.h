@@ -82,8 +82,8 @@ struct Result
   /// edges of the mesh that were detected to lie on feature lines, and kept there.
   std::size_t number_of_feature_edges = 0;
 
-  /// the bound that the drift barrier was set up with, in units of length of the points; infinite if
-  /// it was off.
+  /// the bound that the drift barrier was set up with, in units of length of the points, where it is
+  /// largest: by default it is smaller where the reference is fine; infinite if it was off.
   double drift_bound = std::numeric_limits<double>::infinity();
   /// how far mesh and reference were apart at the start, in units of length: the largest distance of
   /// the middles of the mesh's edges and faces from the reference, and of the vertices and middles of creases of the reference from

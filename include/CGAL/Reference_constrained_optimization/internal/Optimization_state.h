@@ -73,8 +73,8 @@ struct Optimization_state
   // must not become sharp; empty if there are none
   std::vector<char> is_mechanical = {}, bounds_turn = {}, is_smooth = {};
 
-  // Where the turn of faces is bounded the mean of their smallest angles may not fall below the input's,
-  // if the energy is about angles: by how much their sum is above, in degrees.
+  // The mean of the faces' smallest angles may not fall below the input's if the energy is about angles: by
+  // how much their sum is above, in degrees.
   bool guards_angles = false;
   double angle_surplus = 0;
 

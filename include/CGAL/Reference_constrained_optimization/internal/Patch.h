@@ -164,9 +164,11 @@ public:
         patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
-    if(state.guards_angles && !state.bounds_turn.empty() && state.bounds_turn[faces.front()])
-      patch.angle_allowance =
-        (std::max)(0., state.angle_surplus) * double(faces.size()) / double(mesh.number_of_faces());
+    // where much was won there is nothing to fear
+    const double surplus = state.angle_surplus / double(mesh.number_of_faces()),
+                 much = 1; // degrees
+    if(state.guards_angles && surplus < much)
+      patch.angle_allowance = (std::max)(0., surplus) * double(faces.size());
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);

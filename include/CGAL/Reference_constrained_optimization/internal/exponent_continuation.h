@@ -93,7 +93,7 @@ private:
     densities.erase(std::remove(densities.begin(), densities.end(), none), densities.end());
     if(densities.empty())
       return 1;
-    const double trimmed = 0.02;
+    const double trimmed = 0.01;
     const std::size_t half = (densities.size() + 1) / 2;
     const std::size_t most =
       (std::max)(half, std::size_t((1 - trimmed) * double(densities.size())));

@@ -73,6 +73,25 @@ inline void constrain(const std::vector<char>& is_feature,
     }
 }
 
+// Tips of mechanical parts, as that of a cone, stay: vertices at which angles add up to less than 270
+// degrees. The mesh is R, or a copy of it.
+inline void constrain_tips(const Indexed_mesh& mesh,
+                           const Reference_surface& surface,
+                           const std::vector<char>& is_mechanical,
+                           Constraints& constraints)
+{
+  const double sum_at_tip = 270;
+  const Indexed_mesh& triangles = surface.mesh();
+  const auto position = [&](int v) -> const Vector_3& { return surface.points()[v]; };
+  std::vector<double> sum(mesh.number_of_vertices(), 0);
+  for(int c = 0; c < triangles.number_of_corners(); ++c)
+    sum[triangles.source(c)] += corner_angle(triangles, position, c);
+  for(int v = 0; v < mesh.number_of_vertices(); ++v)
+    if(!mesh.is_isolated(v) && !mesh.is_border_vertex[v] && is_mechanical[triangles.face_at(v)] &&
+       sum[v] < sum_at_tip)
+      constraints.is_constrained[v] = 1;
+}
+
 // the faces of the mesh whose vertices all lie on marked triangles of R; empty if there are none
 inline std::vector<char> faces_on(const Optimization_state& state,
                                   const std::vector<char>& is_marked)

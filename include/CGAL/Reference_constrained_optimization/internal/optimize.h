@@ -148,6 +148,8 @@ void optimize(const FaceRange& range,
     constrain(is_same ? features_of_polygons(copy.mesh, surface, features.is_feature)
                       : traced_features(copy.mesh, copy.points, surface, features.is_feature),
               copy.mesh, constraints, result);
+  if(features.number_of_edges > 0 && is_same)
+    constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
   check_distances(copy.points, state, frame);

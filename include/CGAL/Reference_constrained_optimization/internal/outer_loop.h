@@ -142,16 +142,21 @@ private:
     return now;
   }
 
-  // of the faces whose turn is bounded, in degrees
+  // of the faces' smallest, in degrees
   double sum_of_angles() const
   {
     const Indexed_mesh& mesh = m_state.mesh;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
-    double sum = 0;
-    for(int f = 0; f < int(m_state.bounds_turn.size()); ++f)
-      if(m_state.bounds_turn[f])
-        sum +=
+    const int n = m_state.guards_angles ? mesh.number_of_faces() : 0;
+    std::vector<double> sums(number_of_blocks(n), 0);
+    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
+      for(int f = begin; f < end; ++f)
+        sums[block] +=
           degrees_per_radian * std::acos((std::min)(1., smallest_angle_cosine(mesh, vertex, f)));
+    });
+    double sum = 0;
+    for(const double s : sums)
+      sum += s;
     return sum;
   }
   void count_angles() { m_state.angle_surplus = sum_of_angles() - m_initial_angles; }
