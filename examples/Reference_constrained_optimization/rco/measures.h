@@ -130,7 +130,7 @@ inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
   m.figure("area_turned_above_45", "  part of the area above 45", 4, n.share_above_45);
   const RCO::Feature_deviation f =
     is_itself ? RCO::Feature_deviation() : RCO::feature_deviation(*reference, mesh);
-  const double small_part = 0.1; // scans have short pieces of such edges anywhere
+  const double small_part = 0.02;
   m.larger_is_better(Role::condition, "sharp_edges_kept", "sharp edges, part kept", 3, f.kept);
   m.let_pass(small_part);
   m.smaller_is_better(Role::condition, "sharp_edges_added", "  added", 3, f.added);

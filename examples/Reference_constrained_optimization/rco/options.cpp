@@ -51,7 +51,8 @@ or on that of the mesh given by --reference.
 
 Examples:
   rco angle elephant.off -o better.off
-  rco angle part.stl -o better.stl --sharp-edges 40 --relax-constraints
+  rco angle part.stl -o better.stl
+  rco angle noisy_part.stl -o better.stl --sharp-edges 40 --relax-constraints
   rco angle scan.ply -o better.ply --drift-bound 0.1e --maximum-running-time 60 --json
 )";
 
@@ -208,7 +209,7 @@ class Option_reader
     add("drift-bound", text(m_drift_bound, "B"),
         "how far mesh and reference may be apart: a length in the units of the files, a number of "
         "mean edges of the reference if an e follows (0.5e), or inf; default: 0.25e, or what the "
-        "input has");
+        "input has, and less where the reference is finer and on mechanical parts");
     add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 100");
     add("maximum-running-time", number(o.maximum_running_time), "seconds; default: no limit");
     add("energy-tolerance", number(o.energy_tolerance),
@@ -216,11 +217,11 @@ class Option_reader
     add("random-seed", count(m_whole.random_seed), "default: 0");
     add(
       "sharp-edges", text(m_sharp_edges, "S"),
-      "auto: those of mechanical parts are detected, and vertices slide along them; none: none are "
-      "kept; X: edges where the surface turns by more than X degrees are constrained, and their "
-      "vertices do not move; default: auto");
+      "auto: those of mechanical parts are detected, and vertices slide along them; none: none "
+      "are kept; X: edges where the surface turns by more than X degrees are constrained instead, "
+      "and their vertices do not move, without the limits that auto sets to parts; default: auto");
     add("relax-constraints", po::bool_switch(&o.relax_constraints),
-        "vertices on edges constrained by an angle, and on borders, slide along them");
+        "vertices on borders, and on edges constrained by an angle, slide along them");
     add("use-finishing-stage", yes_or_no(o.use_finishing_stage),
         "whether the smallest angles are raised in the end; default: true");
     add("use-on-surface-steps", yes_or_no(o.use_on_surface_steps),

@@ -147,8 +147,8 @@ inline void print_table(std::ostream& out, const Options& options, const Report&
         << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
   }
   if(options.detects_features)
-    out << std::left << std::setw(label) << "feature edges kept" << std::right
-        << std::setw(2 * column) << r.number_of_feature_edges << '\n';
+    out << std::left << std::setw(label) << "feature edges detected" << std::right
+        << std::setw(column) << r.number_of_feature_edges << '\n';
   out << std::setprecision(2) << text_of(report.verdict) << " (" << name(r.status)
       << "): " << r.number_of_iterations << " iterations, " << r.running_time << " seconds";
   if(!options.output.empty())

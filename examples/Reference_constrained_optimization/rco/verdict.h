@@ -43,8 +43,9 @@ inline Verdict verdict_on(const RCO::Result& result,
                           const std::vector<Measure>& before,
                           const std::vector<Measure>& after)
 {
+  const double scan_tolerance = 0.1; // where short pieces of sharp edges are anywhere
   Verdict verdict;
-  bool is_better = false;
+  bool is_better = false, has_lost_edges = false;
   for(std::size_t i = 0; i < after.size(); ++i)
   {
     const Measure &a = before[i], &b = after[i];
@@ -52,13 +53,19 @@ inline Verdict verdict_on(const RCO::Result& result,
       continue;
     const double size = std::isfinite(a.value) ? std::abs(a.value) : 0;
     const double rounding = 1e-9 * (std::max)(1., size);
-    const double gain = b.gain(a), tolerance = (std::max)(b.tolerance, rounding);
+    const bool is_of_scan =
+      result.number_of_feature_edges == 0 && b.key.compare(0, 11, "sharp_edges") == 0;
+    const double gain = b.gain(a),
+                 tolerance = (std::max)(is_of_scan ? scan_tolerance : b.tolerance, rounding);
     is_better = is_better || (b.role == Role::aim && gain > tolerance);
     if(gain >= -tolerance)
       continue;
+    has_lost_edges = has_lost_edges || is_of_scan;
     verdict.worse_keys.push_back(b.key);
     verdict.worse += (verdict.worse.empty() ? "" : ", ") + text_of_change(a, b);
   }
+  if(has_lost_edges)
+    verdict.worse += " (none was taken for a feature)";
   if(result.status == RCO::Status::interrupted)
     verdict.outcome = Outcome::interrupted;
   else if(is_better)
