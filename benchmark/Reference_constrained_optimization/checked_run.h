@@ -207,7 +207,9 @@ inline void check_shape(const Mesh& input,
                         Broken_promises& broken)
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
-  if(r.number_of_feature_edges == 0 || r.initial_drift > 0 || !CGAL::is_triangle_mesh(input))
+  // where defects are mended faces have to turn
+  if(r.number_of_feature_edges == 0 || r.initial_drift > 0 || number_of_initial_defects(r) > 0 ||
+     !CGAL::is_triangle_mesh(input))
     return;
   const RCO::Normal_deviation turn = RCO::normal_deviation(output, input);
   const RCO::Feature_deviation lines = RCO::feature_deviation(input, output);

@@ -194,11 +194,9 @@ void optimize(const FaceRange& range,
     if(!loop_parameters.accepts_all)
       mending.run();
     Global_measure final = view.measure<ConcurrencyTag>(density);
-    // the finishing stage may pay for an angle
     const auto has_risen = [&]() {
       return final.defects() > initial.defects() ||
-             (final.defects() == initial.defects() && final.energy > initial.energy &&
-              final.sharpest >= initial.sharpest);
+             (final.defects() == initial.defects() && final.energy > initial.energy);
     };
     if(mending.has_mended() && std::isfinite(result.drift_bound))
       result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
