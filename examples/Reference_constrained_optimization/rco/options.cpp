@@ -52,7 +52,7 @@ or on that of the mesh given by --reference.
 Examples:
   rco angle elephant.off -o better.off
   rco angle part.stl -o better.stl
-  rco angle noisy_part.stl -o better.stl --sharp-edges 40 --relax-constraints
+  rco angle part.stl -o better.stl --sharp-edges 40 --relax-constraints
   rco angle scan.ply -o better.ply --drift-bound 0.1e --maximum-running-time 60 --json
 )";
 
