@@ -27,6 +27,7 @@ struct Exponent_continuation
 {
   explicit Exponent_continuation(const Density& density) : m_density(density) {}
   const Density& density() const { return m_density; }
+  bool is_complete() const { return true; }
   template <typename ConcurrencyTag>
   bool advance(const Optimization_state&)
   {
@@ -46,6 +47,8 @@ struct Exponent_continuation<Exponential_MIPS_density>
   {}
 
   const Exponential_MIPS_density& density() const { return m_density; }
+  // whether that is the one that is asked for
+  bool is_complete() const { return m_density.exponent_factor() == m_target.exponent_factor(); }
 
   // to the steepest exponent that slivers do not own; false if that is what there is
   template <typename ConcurrencyTag>

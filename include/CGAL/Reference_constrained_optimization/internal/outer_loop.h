@@ -240,7 +240,8 @@ private:
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
-      m_visitor.on_iteration_end(i, energy_of_caller() / double(m_state.elements.size()));
+      const double energy = m_exponent.is_complete() ? after.energy : energy_of_caller();
+      m_visitor.on_iteration_end(i, energy / double(m_state.elements.size()));
       if(!complete)
         return false;
       m_limits.worst = (std::min)(m_limits.worst, after.worst);
