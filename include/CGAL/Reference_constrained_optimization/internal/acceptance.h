@@ -153,8 +153,8 @@ private:
     std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per face: cosine of its smallest angle
-    // where the turn of faces is bounded: cosines per face of its turn against R, and per corner of that
-    // of its edge, at the first of the two
+    // where the turn of faces is bounded: per face, in degrees, and per corner the cosine of that of its
+    // edge, at the first of the two
     std::vector<double> turns, edge_turns;
   };
 
@@ -171,7 +171,7 @@ private:
     m_before.folded.assign(patch.polygons.number_of_corners(), 0);
     m_before.densities.resize(patch.elements.size());
     m_before.cosines.resize(n);
-    m_before.turns.assign(patch.bounds_turn.size(), 1);
+    m_before.turns.assign(patch.bounds_turn.size(), 0);
     m_before.edge_turns.assign(patch.bounds_turn.empty() ? 0 : patch.outside_face.size(), 1);
     m_is_changed.assign(n, 0);
     m_changed.resize(n);
@@ -196,7 +196,7 @@ private:
       details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f], patch.caution) +
                                 is_nonconvex(mesh, vertex, f));
       if(!patch.bounds_turn.empty() && patch.bounds_turn[f])
-        details.turns[f] = face_turn_cosine(mesh, *m_reference, vertex, f, details.normals[f]);
+        details.turns[f] = face_turn(mesh, *m_reference, vertex, f, details.normals[f]);
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
       details.cosines[f] = smallest_angle_cosine(mesh, vertex, f);
@@ -300,7 +300,7 @@ private:
         add_face(mesh, f);
       }
     }
-    const double cosine_of_turn = 0.906, cosine_of_edge_turn = 0.788; // 25 and 38 degrees
+    const double largest_turn = 20, cosine_of_edge_turn = 0.788; // 38 degrees
     for(std::size_t c = 0; c < m_after.edge_turns.size(); ++c)
       if(patch.is_smooth[c] && m_after.edge_turns[c] < cosine_of_edge_turn &&
          m_after.edge_turns[c] < m_before.edge_turns[c])
@@ -311,7 +311,7 @@ private:
           add_face(mesh, mesh.corner_face[mesh.opposite[c]]);
       }
     for(std::size_t f = 0; f < m_after.turns.size(); ++f)
-      if(m_after.turns[f] < cosine_of_turn && m_after.turns[f] < m_before.turns[f])
+      if(m_after.turns[f] > largest_turn && m_after.turns[f] > m_before.turns[f])
       {
         exceeds = true;
         add_face(mesh, int(f));

@@ -50,13 +50,14 @@ struct Exponent_continuation<Exponential_MIPS_density>
   // whether that is the one that is asked for
   bool is_complete() const { return m_density.exponent_factor() == m_target.exponent_factor(); }
 
-  // to the steepest exponent that slivers do not own; false if that is what there is
+  // To the steepest exponent that slivers do not own; false if that is what there is. On mechanical parts
+  // it stays mild: slivers between feature lines can never open.
   template <typename ConcurrencyTag>
   bool advance(const Optimization_state& state)
   {
     const double step = std::sqrt(10.);
     bool advances = false;
-    while(m_density.exponent_factor() < m_target.exponent_factor())
+    while(state.bounds_turn.empty() && m_density.exponent_factor() < m_target.exponent_factor())
     {
       const double next = m_density.exponent_factor() * step, rounding = 1e-9;
       const Exponential_MIPS_density steeper =

@@ -6,38 +6,45 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FACE_TURN_H
 
 #include <CGAL/Reference_constrained_optimization/internal/Optimization_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/face_towards.h>
 
 #include <algorithm>
+#include <array>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The smallest cosine of the angle between a face and R, at the closest points of R to the middle of
-// the face and to points on the way to its corners; 1 for a face without area, and for one that lies in
-// one triangle of R.
+// Barycentric coordinates of the points of a triangle at which its turn against R is measured: the
+// centroid, points towards the corners, and the midpoints of the edges, pulled inside.
+inline const std::array<Vector_3, 7>& turn_samples()
+{
+  static const std::array<Vector_3, 7> samples = {
+    {Vector_3::Constant(1. / 3), Vector_3(.6, .2, .2), Vector_3(.2, .6, .2), Vector_3(.2, .2, .6),
+     Vector_3(.495, .495, .01), Vector_3(.01, .495, .495), Vector_3(.495, .01, .495)}};
+  return samples;
+}
+
+// By how many degrees a face is turned against R: the mean of the angles at those points; 0 for a face
+// without area, and for one that lies in one triangle of R.
 template <typename VertexAccess>
-double face_turn_cosine(const Indexed_mesh& mesh,
-                        const Reference_surface& reference,
-                        const VertexAccess& vertex,
-                        int f,
-                        const Vector_3& normal)
+double face_turn(const Indexed_mesh& mesh,
+                 const Reference_surface& reference,
+                 const VertexAccess& vertex,
+                 int f,
+                 const Vector_3& normal)
 {
   const int begin = mesh.face_begin[f], end = mesh.face_begin[f + 1];
   const auto corner = [&](int c) -> const Placed_vertex& { return vertex(mesh.corner_vertex[c]); };
   const double length = normal.norm();
   bool is_inside = true;
-  Vector_3 middle = Vector_3::Zero();
   for(int c = begin; c < end; ++c)
-  {
     is_inside = is_inside && corner(c).on_reference.face == corner(begin).on_reference.face;
-    middle += corner(c).position / (end - begin);
-  }
   if(is_inside || !(length > 0))
-    return 1;
+    return 0;
   // closest of what the corners lead to: a descent may end at a crease
-  const auto cosine_at = [&](const Vector_3& p, int first) {
+  const auto turn_at = [&](const Vector_3& p, int first) { // first: a corner
     Surface_point best;
     double closest = 0;
     for(int i = 0; i < end - begin; ++i)
@@ -53,14 +60,16 @@ double face_turn_cosine(const Indexed_mesh& mesh,
       }
     }
     const Vector_3 n = reference.face_normal(best.face);
-    const double lengths = n.norm() * length;
     const double side = n.dot(reference.normal(best)) < 0 ? -1 : 1; // R may have been reversed
-    return lengths > 0 ? side * n.dot(normal) / lengths : 1.;
+    return angle_between(side * n, normal);
   };
-  double least = cosine_at(middle, begin);
-  for(int c = begin; c < end; ++c)
-    least = (std::min)(least, cosine_at(0.4 * corner(c).position + 0.6 * middle, c));
-  return least;
+  double sum = 0;
+  for(int t = begin + 1; t + 1 < end; ++t)
+    for(const Vector_3& b : turn_samples())
+      sum += turn_at(b(0) * corner(begin).position + b(1) * corner(t).position +
+                       b(2) * corner(t + 1).position,
+                     b(1) > b(0) ? t : begin);
+  return sum / double((end - begin - 2) * turn_samples().size());
 }
 
 } // namespace internal

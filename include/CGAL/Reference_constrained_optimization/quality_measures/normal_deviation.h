@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/Located_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/face_turn.h>
 #include <CGAL/Reference_constrained_optimization/internal/measuring.h>
 
 #include <algorithm>
@@ -90,9 +91,6 @@ normal_deviation(const FaceGraph& mesh,
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
   const internal::Located_mesh located(
     copy, internal::read_measured_mesh(reference, np_reference, "reference"));
-  const std::array<Vector_3, 7> samples = {
-    {Vector_3::Constant(1. / 3), Vector_3(.6, .2, .2), Vector_3(.2, .6, .2), Vector_3(.2, .2, .6),
-     Vector_3(.495, .495, .01), Vector_3(.01, .495, .495), Vector_3(.495, .01, .495)}};
 
   Normal_deviation result;
   double area = 0, sum = 0;
@@ -108,11 +106,11 @@ normal_deviation(const FaceGraph& mesh,
         continue;
       internal::Surface_point closest = located(copy.mesh.corner_vertex[t[0]]).on_reference;
       double turn = 0;
-      for(const Vector_3& b : samples)
+      for(const Vector_3& b : internal::turn_samples())
         turn += internal::turn_at(located.reference(),
                                   b(0) * corner(0) + b(1) * corner(1) + b(2) * corner(2), normal,
                                   closest);
-      turn /= double(samples.size());
+      turn /= double(internal::turn_samples().size());
       area += weight;
       sum += weight * turn;
       result.maximum = (std::max)(result.maximum, turn);
