@@ -51,15 +51,18 @@ struct Exponent_continuation<Exponential_MIPS_density>
   bool is_complete() const { return m_density.exponent_factor() == m_target.exponent_factor(); }
 
   // To the steepest exponent that slivers do not own; false if that is what there is. On mechanical parts
-  // it stays mild: slivers between feature lines can never open.
+  // a tenth of what is asked for is the steepest: slivers between feature lines can never open.
   template <typename ConcurrencyTag>
   bool advance(const Optimization_state& state)
   {
     const double step = std::sqrt(10.);
+    const double rounding = 1e-9;
+    const double steepest =
+      (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target.exponent_factor();
     bool advances = false;
-    while(state.bounds_turn.empty() && m_density.exponent_factor() < m_target.exponent_factor())
+    while(m_density.exponent_factor() < steepest)
     {
-      const double next = m_density.exponent_factor() * step, rounding = 1e-9;
+      const double next = m_density.exponent_factor() * step;
       const Exponential_MIPS_density steeper =
         next > (1 - rounding) * m_target.exponent_factor() ? m_target : milder(next);
       if(imbalance<ConcurrencyTag>(state, steeper) > largest_imbalance)
