@@ -6,8 +6,8 @@
 
 #include "meshes.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
 #include <cstddef>
 #include <vector>

@@ -5,9 +5,9 @@
 // constraint to the reference, as in "Volume-enhanced compatible remeshing" (Yang, Zhang, Fu, Liu),
 // as far as the paper of this package describes that. It is no reimplementation of that article.
 
-#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
-#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

@@ -5,11 +5,11 @@
 // Micro-benchmarks of single steps, on patches of a bumpy torus.
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
-#include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
-#include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
-#include <CGAL/Reference_constrained_optimization/internal/On_surface_mover.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/Block_LDLT.h>
+#include <CGAL/Reference_constrained_optimization/internal/on_surface/On_surface_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>

@@ -3,7 +3,7 @@
 
 // The variants of the method that the drivers compare.
 
-#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
 
 #include <array>
 #include <limits>

@@ -5,15 +5,15 @@
 
 #include <CGAL/Random.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
-#include <CGAL/Reference_constrained_optimization/internal/Flattened_mover.h>
-#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/Patch.h>
-#include <CGAL/Reference_constrained_optimization/internal/acceptance.h>
-#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
-#include <CGAL/Reference_constrained_optimization/internal/patch_selection.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/acceptance.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 
 #include "method.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
 
 #include <algorithm>
 #include <cstddef>

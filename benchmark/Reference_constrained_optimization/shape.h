@@ -3,8 +3,8 @@
 
 #include "meshes.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
 // The shape of a mesh: closest points and normals.
 class Shape

@@ -4,7 +4,7 @@
 // The shape of a triangle in space, the exponent of the paper's equation (8): |J|^2 / det J for the
 // map J from an equilateral triangle. It is 2 at best and infinite for a triangle without area.
 
-#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -11,9 +11,9 @@
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/detect_features.h>
-#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/face_range.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/tags.h>

@@ -8,10 +8,10 @@
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
-#include <CGAL/Reference_constrained_optimization/internal/Block_LDLT.h>
-#include <CGAL/Reference_constrained_optimization/internal/planar_optimization.h>
-#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
-#include <CGAL/Reference_constrained_optimization/internal/tangent_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/planar_optimization.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/Block_LDLT.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>

@@ -6,9 +6,9 @@
 
 #include "test_util.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/patch_flattening.h>
-#include <CGAL/Reference_constrained_optimization/internal/planar_location.h>
-#include <CGAL/Reference_constrained_optimization/internal/split_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

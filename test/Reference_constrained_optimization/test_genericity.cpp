@@ -9,10 +9,10 @@
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
-#include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
-#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/mending.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/caller_view.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 

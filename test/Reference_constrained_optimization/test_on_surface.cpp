@@ -12,11 +12,11 @@
 #include <CGAL/Random.h>
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
-#include <CGAL/Reference_constrained_optimization/internal/Angle_barrier_density.h>
-#include <CGAL/Reference_constrained_optimization/internal/face_towards.h>
-#include <CGAL/Reference_constrained_optimization/internal/patch_partition.h>
-#include <CGAL/Reference_constrained_optimization/internal/point_index.h>
-#include <CGAL/Reference_constrained_optimization/internal/step_field.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/point_index.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Angle_barrier_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/step_field.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>

@@ -6,7 +6,7 @@
 
 #include "test_util.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/patch_rounds.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_rounds.h>
 
 #include <limits>
 #include <numeric>

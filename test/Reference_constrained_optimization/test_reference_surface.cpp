@@ -7,7 +7,7 @@
 #include "test_util.h"
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
-#include <CGAL/Reference_constrained_optimization/internal/mapping_back.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 
 #include <limits>
 

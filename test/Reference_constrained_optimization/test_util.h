@@ -8,8 +8,8 @@
 #ifndef RCO_TEST_UTIL_H
 #define RCO_TEST_UTIL_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 
 #include <algorithm>
 #include <array>

@@ -8,10 +8,10 @@
 #include <CGAL/Reference_constrained_optimization/Energy_element.h>
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
-#include <CGAL/Reference_constrained_optimization/internal/build_indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/face_correspondence.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
-#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_correspondence.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <array>

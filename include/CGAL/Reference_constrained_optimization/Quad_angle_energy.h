@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
-#include <CGAL/Reference_constrained_optimization/internal/corner_elements.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/corner_elements.h>
 
 #include <cmath>
 #include <cstddef>

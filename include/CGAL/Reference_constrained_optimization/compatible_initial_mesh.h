@@ -6,8 +6,8 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_COMPATIBLE_INITIAL_MESH_H
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
-#include <CGAL/Reference_constrained_optimization/internal/Landmark_map.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_map.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>

@@ -5,9 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_DETECT_FEATURES_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_DETECT_FEATURES_H
 
-#include <CGAL/Reference_constrained_optimization/internal/feature_constraints.h>
-#include <CGAL/Reference_constrained_optimization/internal/feature_detection.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/feature_constraints.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/iterator.h>

@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_FACTORIZATION_TIME_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_FACTORIZATION_TIME_H
 
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>

@@ -7,21 +7,21 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
-#include <CGAL/Reference_constrained_optimization/internal/caller_view.h>
-#include <CGAL/Reference_constrained_optimization/internal/canonical_frame.h>
-#include <CGAL/Reference_constrained_optimization/internal/drift_guard.h>
-#include <CGAL/Reference_constrained_optimization/internal/face_range.h>
-#include <CGAL/Reference_constrained_optimization/internal/feature_constraints.h>
-#include <CGAL/Reference_constrained_optimization/internal/feature_detection.h>
-#include <CGAL/Reference_constrained_optimization/internal/has_area.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/interruption.h>
-#include <CGAL/Reference_constrained_optimization/internal/mending.h>
-#include <CGAL/Reference_constrained_optimization/internal/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference_lines.h>
-#include <CGAL/Reference_constrained_optimization/internal/sliding_vertices.h>
-#include <CGAL/Reference_constrained_optimization/internal/write_back.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/face_range.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/feature_constraints.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/reference_lines.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/caller_view.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/boost/graph/named_params_helper.h>

@@ -6,8 +6,8 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READ_PARAMETERS_H
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
-#include <CGAL/Reference_constrained_optimization/internal/Loop_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/text_of.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/text_of.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <cmath>

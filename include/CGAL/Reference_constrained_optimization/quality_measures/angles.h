@@ -5,8 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ANGLES_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ANGLES_H
 
-#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -5,9 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_DISTORTION_H
 
-#include <CGAL/Reference_constrained_optimization/internal/face_correspondence.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
-#include <CGAL/Reference_constrained_optimization/internal/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_correspondence.h>
 
 #include <Eigen/LU>
 

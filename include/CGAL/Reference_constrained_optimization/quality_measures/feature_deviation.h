@@ -5,9 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_FEATURE_DEVIATION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_FEATURE_DEVIATION_H
 
-#include <CGAL/Reference_constrained_optimization/internal/compatibility.h>
-#include <CGAL/Reference_constrained_optimization/internal/edge_turn.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/edge_turn.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
 
 #include <CGAL/Simple_cartesian.h>
 

@@ -5,9 +5,9 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_MINIMUM_ANGLE_ESTIMATE_H
 
-#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 
 #include <algorithm>
 #include <string>

@@ -5,10 +5,10 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_NORMAL_DEVIATION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_NORMAL_DEVIATION_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Located_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/face_turn.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/Located_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/face_turn.h>
 
 #include <algorithm>
 #include <array>

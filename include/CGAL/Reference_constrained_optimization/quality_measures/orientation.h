@@ -5,8 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ORIENTATION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_ORIENTATION_H
 
-#include <CGAL/Reference_constrained_optimization/internal/Located_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/Located_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 
 #include <cstddef>
 #include <vector>

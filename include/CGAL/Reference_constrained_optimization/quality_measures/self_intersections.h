@@ -5,8 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_SELF_INTERSECTIONS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_SELF_INTERSECTIONS_H
 
-#include <CGAL/Reference_constrained_optimization/internal/measuring.h>
-#include <CGAL/Reference_constrained_optimization/internal/triangulated_copy.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/triangulated_copy.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 

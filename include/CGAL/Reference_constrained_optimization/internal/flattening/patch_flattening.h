@@ -1,0 +1,310 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENING_PATCH_FLATTENING_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENING_PATCH_FLATTENING_H
+
+#include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/injectivity.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/planar_optimization.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/conformal_flattening.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh_parameterization/Barycentric_mapping_parameterizer_3.h>
+#include <CGAL/Surface_mesh_parameterization/Circular_border_parameterizer_3.h>
+#include <CGAL/Surface_mesh_parameterization/LSCM_parameterizer_3.h>
+#include <CGAL/Surface_mesh_parameterization/Mean_value_coordinates_parameterizer_3.h>
+#include <CGAL/Surface_mesh_parameterization/parameterize.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+enum class Flattening_path {
+  conformal,     // found to be injective
+  convex_border, // onto a disk, then symmetric Dirichlet descent with a free border
+  failed
+};
+
+struct Flattening
+{
+  std::vector<Vector_2> positions; // per vertex; of the same total area as the patch
+  Flattening_path path = Flattening_path::failed;
+  double distortion = 0; // area-weighted mean of the symmetric Dirichlet density (4: isometric)
+};
+
+// Which ways to flatten may be taken; the paper's is the second alone.
+struct Flattening_parameters
+{
+  bool use_conformal = true;
+  bool use_conformal_of_cgal = false; // CGAL's solver for it, to compare with
+  bool use_mean_value = true;         // on a convex border, before equal weights are
+  double conformal_limit = 20;        // distortion of a conformal map beyond which it is no start
+  // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
+  // accurate: descent follows, until the distortion is below this.
+  double nearly_isometric = 4.05;
+  int maximum_descent_steps = 25;
+  double descent_tolerance = 1e-2; // a relative decrease that ends the descent
+  // the same as long as the distortion is above `far_distortion`: folds open up slowly at first
+  double far_tolerance = 1e-6;
+  double far_distortion = 5;
+};
+
+// Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
+// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border
+// may cross itself: positions are found again by walking within a sheet, for which that does not
+// matter.
+class Patch_flattener
+{
+  typedef CGAL::Simple_cartesian<double> Kernel;
+  typedef CGAL::Surface_mesh<Kernel::Point_3> Surface_mesh;
+  typedef Surface_mesh::Property_map<Surface_mesh::Vertex_index, Kernel::Point_2> Uv_map;
+
+public:
+  explicit Patch_flattener(Interruption* interruption = nullptr)
+    : m_interruption(interruption),
+      m_optimizer(interruption)
+  {}
+
+  Flattening flatten(const Indexed_mesh& triangles,
+                     const std::vector<Vector_3>& points,
+                     const Flattening_parameters& parameters = Flattening_parameters())
+  {
+    namespace SMP = CGAL::Surface_mesh_parameterization;
+    typedef SMP::Circular_border_arc_length_parameterizer_3<Surface_mesh> Arc_length_border;
+    typedef SMP::Circular_border_uniform_parameterizer_3<Surface_mesh> Uniform_border;
+
+    Flattening flattening;
+    compute_shapes(triangles, points);
+    if(!(m_area > 0))
+      return flattening;
+    m_mesh.clear();
+
+    const bool is_conformal =
+      parameters.use_conformal &&
+      (parameters.use_conformal_of_cgal
+         ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
+         : m_conformal.flatten(triangles, m_shapes, ends(points), flattening.positions)) &&
+      is_usable(triangles, flattening.positions);
+    check(m_interruption);
+    if(is_conformal)
+      flattening.distortion = distortion(triangles, flattening.positions);
+    const bool is_usable_start =
+      (is_conformal && flattening.distortion < parameters.conformal_limit) ||
+      (parameters.use_mean_value && !m_has_empty_edge && // its weights are not defined there
+       run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
+           triangles, points, flattening) &&
+       is_usable(triangles, flattening.positions)) ||
+      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), triangles,
+           points, flattening) &&
+       is_usable(triangles, flattening.positions));
+    if(!is_usable_start)
+      return flattening;
+    check(m_interruption);
+    flattening.path = is_conformal && flattening.distortion < parameters.conformal_limit
+                        ? Flattening_path::conformal
+                        : Flattening_path::convex_border;
+    if(flattening.path == Flattening_path::convex_border ||
+       flattening.distortion > parameters.nearly_isometric)
+    {
+      const std::vector<Vector_2> start = flattening.positions;
+      descend(triangles, flattening.positions, parameters);
+      if(!is_locally_injective(triangles, flattening.positions))
+        flattening.positions = start;
+      flattening.distortion = distortion(triangles, flattening.positions);
+    }
+    return flattening;
+  }
+
+private:
+  // shapes of the triangles in space; those without area get one, so that they can be descended to
+  void compute_shapes(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
+  {
+    m_shapes.clear();
+    m_area = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+    {
+      const int* v = &triangles.corner_vertex[3 * t];
+      const Vector_3 &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
+      m_shapes.push_back(triangle_shape(a, b, c));
+      m_area += 0.5 * m_shapes.back().determinant();
+      shortest = (std::min)({shortest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
+    }
+    const double mean_length = std::sqrt(m_area / triangles.number_of_faces());
+    // when it is moved to the origin, rounding may leave nothing of it
+    m_has_empty_edge = !(shortest > 1e-9 * mean_length);
+    for(Eigen::Matrix2d& s : m_shapes)
+    {
+      s(0, 0) = (std::max)(s(0, 0), 0.01 * mean_length);
+      s(1, 1) = (std::max)(s(1, 1), 0.01 * (std::max)(mean_length, s(0, 0)));
+    }
+  }
+
+  // the two ends of the patch along the longest side of its bounding box
+  static std::array<int, 2> ends(const std::vector<Vector_3>& points)
+  {
+    Vector_3 low = points.front(), high = low;
+    for(const Vector_3& p : points)
+    {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    int axis;
+    (high - low).maxCoeff(&axis);
+    std::array<int, 2> result = {{0, 0}};
+    for(std::size_t i = 1; i < points.size(); ++i)
+    {
+      if(points[i](axis) < points[result[0]](axis))
+        result[0] = int(i);
+      if(points[i](axis) > points[result[1]](axis))
+        result[1] = int(i);
+    }
+    return result;
+  }
+
+  // CGAL's mesh of the patch, moved to the origin and scaled to unit area. False, and no mesh, if two
+  // edges join the same vertices, as diagonals of quads may do: nothing of this is injective in the plane.
+  bool build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
+  {
+    m_mesh.reserve(Surface_mesh::size_type(points.size()),
+                   Surface_mesh::size_type(3 * points.size()),
+                   Surface_mesh::size_type(triangles.number_of_faces()));
+    const double scale = 1 / std::sqrt(m_area);
+    for(const Vector_3& p : points)
+    {
+      const Vector_3 q = scale * (p - points.front());
+      m_mesh.add_vertex(Kernel::Point_3(q.x(), q.y(), q.z()));
+    }
+    typedef Surface_mesh::Vertex_index Vertex;
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+    {
+      const int* v = &triangles.corner_vertex[3 * t];
+      if(m_mesh.add_face(Vertex(v[0]), Vertex(v[1]), Vertex(v[2])) == Surface_mesh::null_face())
+      {
+        m_mesh.clear();
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // CGAL's mesh is built when the first of its parameterizers asks for it
+  template <typename Parameterizer>
+  bool run(const Parameterizer& parameterizer,
+           const Indexed_mesh& triangles,
+           const std::vector<Vector_3>& points,
+           Flattening& flattening)
+  {
+    namespace SMP = CGAL::Surface_mesh_parameterization;
+    if(m_mesh.is_empty() && !build(triangles, points))
+      return false;
+    Surface_mesh::Halfedge_index border = Surface_mesh::null_halfedge();
+    for(const Surface_mesh::Halfedge_index h : m_mesh.halfedges())
+      if(m_mesh.is_border(h))
+      {
+        border = h;
+        break;
+      }
+    if(border == Surface_mesh::null_halfedge())
+      return false;
+    Uv_map uv = m_mesh.add_property_map<Surface_mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
+    const SMP::Error_code error = SMP::parameterize(m_mesh, parameterizer, border, uv);
+    flattening.positions.resize(m_mesh.number_of_vertices());
+    for(const Surface_mesh::Vertex_index v : m_mesh.vertices())
+      flattening.positions[v] = Vector_2(uv[v].x(), uv[v].y());
+    m_mesh.remove_property_map(uv);
+    return error == SMP::OK;
+  }
+
+  // Checks injectivity and scales to the area of the patch. A conformal map may shrink the ends of
+  // long parts to nothing: such triangles are injective, but of no use to work in.
+  bool is_usable(const Indexed_mesh& triangles, std::vector<Vector_2>& u) const
+  {
+    if(!is_locally_injective(triangles, u))
+      return false;
+    double area = 0;
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+      area += 0.5 * plane_edges(triangles, u, t).determinant();
+    const double scale = std::sqrt(m_area / area);
+    if(!(area > 0) || !std::isfinite(scale))
+      return false;
+    for(Vector_2& p : u)
+      p *= scale;
+    return true;
+  }
+
+  void descend(const Indexed_mesh& triangles,
+               std::vector<Vector_2>& u,
+               const Flattening_parameters& parameters)
+  {
+    Planar_problem problem;
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+    {
+      const int* v = &triangles.corner_vertex[3 * t];
+      problem.triples.push_back({{v[0], v[1], v[2]}});
+      problem.rest_inverse.push_back(m_shapes[t].inverse());
+      problem.metric.push_back(Eigen::Matrix2d::Identity());
+    }
+    problem.is_free.assign(u.size(), 1);
+    m_optimizer.analyze(problem);
+    double reached = distortion(triangles, u);
+    for(int step = 0; step < parameters.maximum_descent_steps; ++step)
+    {
+      const double tolerance = reached > parameters.far_distortion ? parameters.far_tolerance
+                                                                   : parameters.descent_tolerance;
+      const Projected_newton::Outcome outcome =
+        m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
+      const double gained = outcome.initial_energy - outcome.final_energy;
+      reached = distortion(triangles, u);
+      if(outcome.steps == 0 || gained < tolerance * outcome.final_energy ||
+         reached < parameters.nearly_isometric)
+        return;
+    }
+  }
+
+  double distortion(const Indexed_mesh& triangles, const std::vector<Vector_2>& u) const
+  {
+    const Symmetric_Dirichlet_density density;
+    double sum = 0, area = 0;
+    for(int t = 0; t < triangles.number_of_faces(); ++t)
+    {
+      const double a = m_shapes[t].determinant();
+      sum += a * density.value(plane_edges(triangles, u, t) * m_shapes[t].inverse());
+      area += a;
+    }
+    return sum / area;
+  }
+
+  static Eigen::Matrix2d
+  plane_edges(const Indexed_mesh& triangles, const std::vector<Vector_2>& u, int t)
+  {
+    const int* v = &triangles.corner_vertex[3 * t];
+    return Planar_problem::edges(u, {{v[0], v[1], v[2]}});
+  }
+
+  Interruption* m_interruption;
+  Conformal_flattening m_conformal;
+  Surface_mesh m_mesh;
+  std::vector<Eigen::Matrix2d> m_shapes;
+  double m_area = 0;
+  bool m_has_empty_edge = false;
+  Projected_newton m_optimizer;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_FLATTENING_PATCH_FLATTENING_H

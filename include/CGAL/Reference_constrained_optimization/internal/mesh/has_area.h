@@ -1,0 +1,44 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_MESH_HAS_AREA_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_MESH_HAS_AREA_H
+
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Of the triangle of a corner and its two neighbours, above its longest side; 0 if it has none.
+template <typename PointAccess>
+double height_at_corner(const Indexed_mesh& mesh, const PointAccess& point, int c)
+{
+  const Vector_3& p = point(mesh.source(c));
+  const Vector_3 u = point(mesh.target(c)) - p, v = point(mesh.source(mesh.previous(c))) - p;
+  const double longest = (std::max)({u.norm(), v.norm(), (u - v).norm()});
+  return longest > 0 ? u.cross(v).norm() / longest : 0;
+}
+
+// Whether some face is more than a line, by more than rounding of the coordinates explains.
+// `point(v)` is the position of a vertex.
+template <typename PointAccess>
+bool has_area(const Indexed_mesh& mesh, const PointAccess& point)
+{
+  const double rounding =
+    4 * std::numeric_limits<double>::epsilon() * largest_coordinate(mesh, point);
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(height_at_corner(mesh, point, c) > rounding)
+      return true;
+  return false;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_MESH_HAS_AREA_H

@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_DERIVATIVES_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_DERIVATIVES_H
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <type_traits>
+#include <utility>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Value, gradient (column-major) and positive semi-definite Hessian of a density: the density's own
+// closed form if it has one, else the eigen-decomposition of its Hessian.
+template <typename Density>
+auto projected_derivatives(const Density& density,
+                           const Eigen::Matrix2d& J,
+                           Eigen::Vector4d& gradient,
+                           Eigen::Matrix4d& hessian,
+                           int) -> decltype(density.projected_derivatives(J, gradient, hessian))
+{
+  return density.projected_derivatives(J, gradient, hessian);
+}
+
+template <typename Density>
+double projected_derivatives(const Density& density,
+                             const Eigen::Matrix2d& J,
+                             Eigen::Vector4d& gradient,
+                             Eigen::Matrix4d& hessian,
+                             long)
+{
+  const Eigen::Matrix2d g = density.gradient(J);
+  gradient = Eigen::Map<const Eigen::Vector4d>(g.data());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(density.hessian(J));
+  const Eigen::Matrix4d& vectors = solver.eigenvectors();
+  hessian = vectors * solver.eigenvalues().cwiseMax(0.).asDiagonal() * vectors.transpose();
+  return density.value(J);
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_DERIVATIVES_H

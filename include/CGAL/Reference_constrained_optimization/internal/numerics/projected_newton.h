@@ -1,0 +1,321 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_NEWTON_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_NEWTON_H
+
+#include <CGAL/Reference_constrained_optimization/internal/numerics/Newton_system.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/flip_free_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/projected_derivatives.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Projected Newton descent on a sum of densities over triangles whose shapes are affine in two
+// coordinates per vertex: positive semi-definite element Hessians, no step beyond the collapse of a
+// triangle, Armijo's rule.
+//
+// A problem has `triples` (elements), `rest_inverse`, `is_free` (per vertex), `shape(e, u)`, the edge
+// matrix of element e for coordinates u, and `corner_map(e, i)`, the matrix by which the i-th vertex
+// of element e moves when its coordinates do. A drift barrier is added to the energy: `drift`, a
+// Drift_terms, in triangles of the vertices `carriers`.
+class Projected_newton
+{
+public:
+  // may be given up between its steps, and within
+  explicit Projected_newton(Interruption* interruption = nullptr) : m_interruption(interruption) {}
+
+  struct Outcome
+  {
+    int steps = 0;
+    double initial_energy = 0, final_energy = 0;
+    double promised = 0; // what the first step would gain, undamped, if the energy were quadratic
+  };
+
+  // numbers the unknowns of a problem and factorizes its pattern; `minimize` may then be called any
+  // number of times for problems with the same triples and free vertices
+  template <typename Problem>
+  void analyze(const Problem& problem)
+  {
+    m_variable.assign(problem.is_free.size(), -1);
+    m_size = 0;
+    for(std::size_t i = 0; i < problem.is_free.size(); ++i)
+      if(problem.is_free[i])
+        m_variable[i] = m_size++;
+    m_triples = problem.triples;
+    m_first_carrier = 0;
+    if(problem.carriers != problem.triples) // which then need no entries of their own
+    {
+      m_first_carrier = int(m_triples.size());
+      m_triples.insert(m_triples.end(), problem.carriers.begin(), problem.carriers.end());
+    }
+    if(m_size > 0)
+      m_system.analyze(m_variable, m_size, m_triples);
+    m_right.resize(2 * m_size);
+  }
+
+  // Adds to the Hessian of every element this part of its trace, on the diagonal. Energies that do not
+  // change with scale have soft directions, along which a step would be far too long; a resistance to
+  // strain leaves the long ways open that neighbours go together.
+  void set_strain_resistance(double part) { m_strain_resistance = part; }
+
+  // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
+  // energy by less than `tolerance` times what it would be if all elements were like the best: a few
+  // that nothing can open may own the sum.
+  template <typename Problem, typename Density>
+  Outcome minimize(const Problem& problem,
+                   const Density& density,
+                   std::vector<Vector_2>& u,
+                   int maximum_steps,
+                   double tolerance)
+  {
+    Outcome outcome;
+    if(m_size == 0)
+      return outcome;
+
+    check(m_interruption);
+    double energy = assemble(problem, density, u);
+    outcome.initial_energy = outcome.final_energy = energy;
+    std::vector<Vector_2> moved(u);
+    for(int step = 0; step < maximum_steps; ++step)
+    {
+      check(m_interruption);
+      if(!m_system.solve(m_right, m_direction, m_interruption))
+        break;
+      check(m_interruption);
+      if(step == 0)
+        outcome.promised = 0.5 * m_right.dot(m_direction);
+      const bool is_safe = damp(problem, u);
+      const double decrease = m_right.dot(m_direction);
+      if(!(decrease > tolerance * m_scale))
+        break;
+
+      double t = is_safe ? 1 : (std::min)(1., 0.9 * largest_flip_free_step(problem, u));
+      double trial = 0;
+      bool found = false;
+      for(int halving = 0; halving < 20 && !found; ++halving)
+      {
+        for(std::size_t i = 0; i < u.size(); ++i)
+          if(m_variable[i] >= 0)
+            moved[i] = u[i] + t * m_direction.segment<2>(2 * m_variable[i]);
+        check(m_interruption);
+        trial = value(problem, density, moved);
+        found = trial <= energy - 1e-4 * t * decrease;
+        if(!found)
+          t *= 0.5;
+      }
+      if(!found)
+        break;
+      const double gained = energy - trial;
+      u = moved;
+      energy = outcome.final_energy = trial;
+      ++outcome.steps;
+      if(step + 1 == maximum_steps || gained < tolerance * m_scale)
+        break;
+      check(m_interruption);
+      assemble(problem, density, u);
+    }
+    return outcome;
+  }
+
+private:
+  template <typename Problem, typename Density>
+  static double
+  value(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  {
+    double sum = 0;
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+      sum += density.value(problem.shape(e, u) * problem.rest_inverse[e]);
+    for(const auto& term : problem.drift.terms())
+      sum += problem.drift.barrier().value(distance(problem, term, u), term.bound);
+    return sum;
+  }
+
+  // negative beyond the other surface, where the barrier is not felt
+  template <typename Problem, typename Term>
+  static double distance(const Problem& problem, const Term& term, const std::vector<Vector_2>& u)
+  {
+    const std::array<int, 3>& t = problem.carriers[term.triangle];
+    double d = term.distance;
+    for(int k = 0; k < 3; ++k)
+      d += term.rows[k].dot(u[t[k]]);
+    return d;
+  }
+
+  // matrix and right-hand side (the negative gradient) at u; returns the energy
+  template <typename Problem, typename Density>
+  double assemble(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  {
+    m_system.set_zero();
+    m_right.setZero();
+    double sum = 0, least = std::numeric_limits<double>::infinity();
+    const auto add = [&](double value) {
+      sum += value;
+      least = (std::min)(least, std::abs(value));
+    };
+    Eigen::Vector4d gradient;
+    Eigen::Matrix4d hessian;
+    Eigen::Matrix<double, 4, 2> motion[3];
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+    {
+      const std::array<int, 3>& t = problem.triples[e];
+      const Eigen::Matrix2d& rest = problem.rest_inverse[e];
+      const Eigen::Matrix2d J = problem.shape(e, u) * rest;
+      const int variable[3] = {m_variable[t[0]], m_variable[t[1]], m_variable[t[2]]};
+      if(variable[0] < 0 && variable[1] < 0 && variable[2] < 0)
+      {
+        add(density.value(J));
+        continue;
+      }
+      add(projected_derivatives(density, J, gradient, hessian, 0));
+      hessian.diagonal().array() += m_strain_resistance * hessian.trace();
+
+      // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
+      // in the entries of J
+      const double w[3][2] = {{-rest(0, 0) - rest(1, 0), -rest(0, 1) - rest(1, 1)},
+                              {rest(0, 0), rest(0, 1)},
+                              {rest(1, 0), rest(1, 1)}};
+      for(int i = 0; i < 3; ++i)
+      {
+        const Eigen::Matrix2d& map = problem.corner_map(e, i);
+        motion[i].topRows<2>() = w[i][0] * map;
+        motion[i].bottomRows<2>() = w[i][1] * map;
+      }
+      for(int j = 0; j < 3; ++j)
+      {
+        const int b = variable[j], i = (j + 2) % 3, a = variable[i];
+        if(b < 0)
+          continue;
+        m_right.segment<2>(2 * b) -= motion[j].transpose() * gradient;
+        const Eigen::Matrix<double, 4, 2> bent = hessian * motion[j];
+        m_system.add_diagonal(b, motion[j].transpose() * bent);
+        if(a >= 0)
+          m_system.add_side(int(e), i, a, b, motion[i].transpose() * bent);
+      }
+    }
+    m_scale = least * double(problem.triples.size());
+    return sum + add_drift(problem, u);
+  }
+
+  // Gauss and Newton's Hessian; returns the energy
+  template <typename Problem>
+  double add_drift(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    double sum = 0;
+    for(const auto& term : problem.drift.terms())
+    {
+      const auto d = problem.drift.barrier().derivatives(distance(problem, term, u), term.bound);
+      sum += d.value;
+      const std::array<int, 3>& t = problem.carriers[term.triangle];
+      for(int j = 0; j < 3; ++j)
+      {
+        const int i = (j + 2) % 3, a = m_variable[t[i]], b = m_variable[t[j]];
+        if(b < 0)
+          continue;
+        m_right.segment<2>(2 * b) -= d.first * term.rows[j];
+        m_system.add_diagonal(b, d.second * term.rows[j] * term.rows[j].transpose());
+        if(a >= 0)
+          m_system.add_side(m_first_carrier + term.triangle, i, a, b,
+                            d.second * term.rows[i] * term.rows[j].transpose());
+      }
+    }
+    return sum;
+  }
+
+  // Shortens the motion of the vertices of elements that would collapse on the way, so that these few
+  // do not hold back all others, unless little of the descent would remain. Returns whether a whole step
+  // is known to let none collapse.
+  template <typename Problem>
+  bool damp(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    m_undamped = m_direction;
+    bool is_safe = false;
+    const int maximum_passes = 3; // motions that are shortened unequally may collapse others
+    for(int pass = 0; pass < maximum_passes && !is_safe; ++pass)
+    {
+      m_part.assign(m_size, 1.);
+      is_safe = true;
+      for_each_collapse(problem, u, [&](std::size_t e, double time) {
+        const double part = 0.9 * time;
+        if(!(part < 1))
+          return;
+        is_safe = false;
+        for(const int v : problem.triples[e])
+          if(m_variable[v] >= 0)
+            m_part[m_variable[v]] = (std::min)(m_part[m_variable[v]], part);
+      });
+      if(!is_safe)
+        for(int i = 0; i < m_size; ++i)
+          m_direction.segment<2>(2 * i) *= m_part[i];
+    }
+    if(m_right.dot(m_direction) > 0.1 * m_right.dot(m_undamped))
+      return is_safe;
+    m_direction = m_undamped;
+    return false;
+  }
+
+  template <typename Problem>
+  double largest_flip_free_step(const Problem& problem, const std::vector<Vector_2>& u) const
+  {
+    double step = std::numeric_limits<double>::infinity();
+    for_each_collapse(problem, u, [&](std::size_t, double time) { step = (std::min)(step, time); });
+    return step;
+  }
+
+  // calls visit(e, t) with the part t of the motion at which element e collapses
+  template <typename Problem, typename Visit>
+  void for_each_collapse(const Problem& problem,
+                         const std::vector<Vector_2>& u,
+                         const Visit& visit) const
+  {
+    const auto motion = [&](int v) -> Vector_2 {
+      return m_variable[v] < 0 ? Vector_2(Vector_2::Zero())
+                               : Vector_2(m_direction.segment<2>(2 * m_variable[v]));
+    };
+    for(std::size_t e = 0; e < problem.triples.size(); ++e)
+    {
+      const Eigen::Matrix2d shape = problem.shape(e, u);
+      // inverted already, or as good as: the density pushes it back, and may be trusted with that
+      const double flat = 1e-3;
+      const double area = shape.determinant();
+      if(!(area > flat * shape.squaredNorm()))
+        continue;
+      const std::array<int, 3>& t = problem.triples[e];
+      const Vector_2 first = problem.corner_map(e, 0) * motion(t[0]);
+      Eigen::Matrix2d d;
+      d.col(0) = problem.corner_map(e, 1) * motion(t[1]) - first;
+      d.col(1) = problem.corner_map(e, 2) * motion(t[2]) - first;
+      visit(e, time_of_collapse(shape, d));
+    }
+  }
+
+  Interruption* m_interruption;
+  int m_size = 0;
+  int m_first_carrier = 0;                   // number of the first carrier among the triples
+  std::vector<std::array<int, 3>> m_triples; // of the system
+  double m_strain_resistance = 0;
+  double m_scale = 0; // of the energy, for tolerances
+  Newton_system m_system;
+  std::vector<int> m_variable;
+  Eigen::VectorXd m_right, m_direction, m_undamped;
+  std::vector<double> m_part; // per variable: what remains of its motion
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_NUMERICS_PROJECTED_NEWTON_H

@@ -1,0 +1,269 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_ON_SURFACE_MOVER_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_ON_SURFACE_MOVER_H
+
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/projected_newton.h>
+#include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/crease_direction.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/drift_terms.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A patch's energy as a function of the coordinates of each vertex in its own tangent plane, to first
+// order: vertex i is at p_i + T_i u_i, and an element's shape is seen in the plane of the element. The
+// second column of T_i is zero for vertices that slide along a line.
+struct Tangent_problem
+{
+  std::vector<std::array<int, 3>> triples;
+  std::vector<Eigen::Matrix2d> rest_inverse;
+  std::vector<char> is_free;                // per vertex
+  std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
+  Drift_terms drift;
+
+  std::vector<Eigen::Matrix2d> shapes;      // at u = 0
+  std::vector<Eigen::Matrix2d> corner_maps; // three per element
+
+  Eigen::Matrix2d shape(std::size_t e, const std::vector<Vector_2>& u) const
+  {
+    const std::array<int, 3>& t = triples[e];
+    const Vector_2 first = corner_map(e, 0) * u[t[0]];
+    Eigen::Matrix2d result = shapes[e];
+    result.col(0) += corner_map(e, 1) * u[t[1]] - first;
+    result.col(1) += corner_map(e, 2) * u[t[2]] - first;
+    return result;
+  }
+  const Eigen::Matrix2d& corner_map(std::size_t e, int i) const { return corner_maps[3 * e + i]; }
+};
+
+// The resistance to strain after a step of which that part was taken: the next step may be bolder if
+// nearly all of it was, and must be more careful if much of it was cut.
+constexpr double largest_resistance = 0.05;
+inline double adapted_resistance(double resistance, double taken)
+{
+  const double smallest_resistance = 0.001;
+  if(taken > 0.95)
+    return (std::max)(smallest_resistance, 0.25 * resistance);
+  return taken < 0.8 ? (std::min)(6 * largest_resistance, 2.5 * resistance) : resistance;
+}
+
+// Moves the vertices of a patch directly along R: Newton steps in the tangent planes, then back to R
+// by the local closest point. Much cheaper than a flattened patch, as accurate where steps are
+// small; but what is folded stays folded.
+class On_surface_mover
+{
+public:
+  On_surface_mover(const Reference_surface& reference,
+                   int newton_steps,
+                   Interruption* interruption = nullptr)
+    : m_reference(reference),
+      m_newton_steps(newton_steps),
+      m_interruption(interruption),
+      m_newton(interruption)
+  {}
+
+  // of the first step of the patches to come; see Projected_newton
+  void set_strain_resistance(double part) { m_first_resistance = part; }
+
+  template <typename Density>
+  bool propose(const Patch& patch, const Density& density)
+  {
+    m_optimization_time = 0;
+    const auto start = std::chrono::steady_clock::now();
+    m_problem.triples.clear();
+    m_problem.rest_inverse.clear();
+    m_problem.is_free = patch.is_free;
+    for(const Element_set::Element& e : patch.elements)
+    {
+      m_problem.triples.push_back(e.vertices);
+      m_problem.rest_inverse.push_back(e.rest_inverse);
+    }
+    m_problem.carriers = drift_carriers(patch);
+    check(m_interruption);
+    m_newton.analyze(m_problem);
+    check(m_interruption);
+    m_strain_resistance = m_first_resistance;
+    m_is_held.assign(patch.vertices.size(), !patch.samples.empty());
+    const bool proposes = step(patch, density);
+    m_optimization_time += seconds_since(start);
+    return proposes;
+  }
+
+  // from where the vertices are now
+  template <typename Density>
+  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  {
+    const auto start = std::chrono::steady_clock::now();
+    adapt(patch, steps);
+    // what went off its crease without much harm may go on
+    for(std::size_t v = 0; v < steps.size(); ++v)
+      m_is_held[v] = !patch.samples.empty() && steps[v] < 0.5;
+    const bool proposes = step(patch, density);
+    m_optimization_time += seconds_since(start);
+    return proposes;
+  }
+
+  // the vertex after the part t of its way; false if R is not found there
+  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  {
+    const Placed_vertex& from = patch.placed[v];
+    if(patch.slides(v))
+      return slide(patch, v, t * m_motion[v](0), m_reference, result);
+    return step_on_surface(m_reference, from, t * (m_frames[v] * m_motion[v]), result);
+  }
+
+  double motion_length(int v) const { return m_motion[v].norm(); }
+  double optimization_time() const { return m_optimization_time; }
+  // the gain that the last proposal promised
+  double promised() const { return m_promised; }
+
+private:
+  // Newton steps from where the vertices are now
+  template <typename Density>
+  bool step(const Patch& patch, const Density& density)
+  {
+    linearize(patch, density);
+    m_motion.assign(patch.vertices.size(), Vector_2::Zero());
+    m_newton.set_strain_resistance(m_strain_resistance);
+    const Projected_newton::Outcome outcome =
+      m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8);
+    m_promised = outcome.promised;
+    return outcome.steps > 0;
+  }
+
+  // the next step may be bolder if nearly all of the last one was taken, and must be more careful if
+  // much of it was cut
+  void adapt(const Patch& patch, const std::vector<double>& steps)
+  {
+    double taken = 0;
+    for(std::size_t v = 0; v < steps.size(); ++v)
+      taken += patch.is_free[v] ? steps[v] : 0;
+    taken /= patch.number_of_free_vertices;
+    m_strain_resistance = adapted_resistance(m_strain_resistance, taken);
+  }
+
+  template <typename Density>
+  void linearize(const Patch& patch, const Density& density)
+  {
+    find_planes(patch);
+    find_descent(patch, density);
+    m_frames.resize(patch.vertices.size());
+    for(std::size_t v = 0; v < patch.vertices.size(); ++v)
+      if(patch.slides(int(v)))
+        m_frames[v] << patch.lines->tangent(patch.placed[v].on_line), Vector_3::Zero();
+      else
+      {
+        // only R's own planes make the model one of first order; where several meet it is the one
+        // that the vertex is about to enter
+        const Surface_point& on_reference = patch.placed[v].on_reference;
+        if(m_is_held[v] && patch.is_free[v])
+        {
+          const Vector_3 along = crease_direction(m_reference, on_reference, m_descent[v]);
+          if(!along.isZero(0))
+          {
+            m_frames[v] << along, Vector_3::Zero();
+            continue;
+          }
+        }
+        const int face = patch.is_free[v] ? face_towards(m_reference, on_reference, m_descent[v])
+                                          : on_reference.face;
+        m_frames[v] = tangent_frame(m_reference.face_normal(face));
+      }
+    m_problem.corner_maps.resize(3 * patch.elements.size());
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+      for(int i = 0; i < 3; ++i)
+        m_problem.corner_maps[3 * e + i] =
+          m_planes[e].transpose() * m_frames[patch.elements[e].vertices[i]];
+    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_frames[v]; });
+  }
+
+  // the planes of the elements, and their shapes there
+  void find_planes(const Patch& patch)
+  {
+    m_planes.clear();
+    m_problem.shapes.clear();
+    for(const Element_set::Element& e : patch.elements)
+    {
+      const Placed_vertex* p[3];
+      for(int i = 0; i < 3; ++i)
+        p[i] = &patch.placed[e.vertices[i]];
+      const Vector_3 a = p[1]->position - p[0]->position, b = p[2]->position - p[0]->position;
+      const Vector_3 outward = p[0]->normal + p[1]->normal + p[2]->normal;
+      Vector_3 normal = a.cross(b);
+      if(normal.squaredNorm() > 1e-20 * a.squaredNorm() * b.squaredNorm())
+        normal *= normal.dot(outward) < 0 ? -1 : 1;
+      else
+        normal = outward; // no plane of its own
+      m_planes.push_back(tangent_frame(normal));
+      Eigen::Matrix2d shape;
+      shape.col(0) = m_planes.back().transpose() * a;
+      shape.col(1) = m_planes.back().transpose() * b;
+      m_problem.shapes.push_back(shape);
+    }
+  }
+
+  // the negative gradient in space at the vertices that lie on vertices and edges of R
+  template <typename Density>
+  void find_descent(const Patch& patch, const Density& density)
+  {
+    m_descent.assign(patch.vertices.size(), Vector_3::Zero());
+    const auto is_on_edge = [&](int v) {
+      return patch.is_free[v] && !(patch.placed[v].on_reference.barycentric.minCoeff() > 0);
+    };
+    Eigen::Vector4d gradient;
+    Eigen::Matrix4d unused;
+    for(std::size_t e = 0; e < patch.elements.size(); ++e)
+    {
+      const Element_set::Element& element = patch.elements[e];
+      const std::array<int, 3>& t = element.vertices;
+      if(!is_on_edge(t[0]) && !is_on_edge(t[1]) && !is_on_edge(t[2]))
+        continue;
+      projected_derivatives(density, m_problem.shapes[e] * element.rest_inverse, gradient, unused,
+                            0);
+      const Eigen::Matrix2d by_jacobian = Eigen::Map<const Eigen::Matrix2d>(gradient.data());
+      const Eigen::Matrix<double, 3, 2> by_edges =
+        m_planes[e] * (by_jacobian * element.rest_inverse.transpose());
+      m_descent[t[0]] += by_edges.col(0) + by_edges.col(1);
+      m_descent[t[1]] -= by_edges.col(0);
+      m_descent[t[2]] -= by_edges.col(1);
+    }
+  }
+
+  const Reference_surface& m_reference;
+  int m_newton_steps;
+  Interruption* m_interruption;
+  double m_first_resistance = largest_resistance, m_strain_resistance = largest_resistance;
+  Projected_newton m_newton;
+  Tangent_problem m_problem;
+  std::vector<Tangent_frame> m_frames; // per vertex
+  std::vector<Tangent_frame> m_planes; // per element
+  std::vector<Vector_3> m_descent;     // per vertex
+  std::vector<Vector_2> m_motion;      // per vertex, in its frame
+  std::vector<char> m_is_held;         // per vertex: it stays on the crease of R that it is on
+  double m_optimization_time = 0;
+  double m_promised = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_ON_SURFACE_MOVER_H

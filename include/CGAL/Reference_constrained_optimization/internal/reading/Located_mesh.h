@@ -1,0 +1,62 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READING_LOCATED_MESH_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READING_LOCATED_MESH_H
+
+#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A mesh as it is, every vertex with its point of a reference and the normal there: the state that
+// an optimization without free vertices would start from.
+class Located_mesh
+{
+  // a state has elements, but what is measured here does not hang on them
+  struct One_element_per_face
+  {
+    void
+    append_elements(const Energy_context&, std::size_t, std::vector<Energy_element>& elements) const
+    {
+      elements.push_back(Energy_element());
+    }
+  };
+
+public:
+  Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference) : Located_mesh(copy, reference, 0)
+  {
+    m_state.is_free.assign(copy.points.size(), 0); // nothing is moved onto the reference
+    Result unused;
+    place_on_reference<CGAL::Sequential_tag>(copy.points, m_surface, m_state, unused);
+  }
+
+  const Placed_vertex& operator()(int v) const { return m_state.vertices[v]; }
+
+  // turned round where it is oriented against the mesh
+  const Reference_surface& reference() const { return m_surface; }
+
+private:
+  Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference, int)
+    : m_surface(reference),
+      m_elements(
+        One_element_per_face(),
+        Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(), 1, 1, 1)),
+      m_state{copy.mesh, m_surface, m_elements, {}, {}, {}, {}}
+  {}
+
+  Reference_surface m_surface;
+  Element_set m_elements;
+  Optimization_state m_state;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_READING_LOCATED_MESH_H

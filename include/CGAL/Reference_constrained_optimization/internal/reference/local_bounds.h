@@ -1,0 +1,95 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_LOCAL_BOUNDS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_LOCAL_BOUNDS_H
+
+#include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// How far a mesh may be from R at each vertex of R: the default bound, but no more than a part of the size
+// of what is there. On mechanical parts, where small holes lie among large faces, that is the shortest
+// edge, and the default is a fifth of that for scans; on scans, where single short edges mean nothing, the
+// longest edge within two rings. Between vertices bounds grow no faster than a part of the distance.
+// Lengths are meant for a default bound of a quarter of the mean edge.
+inline std::vector<double> local_bounds(const Reference_surface& reference,
+                                        const std::vector<char>& is_mechanical,
+                                        double default_bound)
+{
+  const double scale = default_bound / (0.25 * reference.mean_edge_length());
+  const double shortest_part = 0.5 * scale, longest_part = 0.35 * scale, grading = 0.5 * scale;
+  const double mechanical_bound = 0.2 * default_bound, least = 0.02 * default_bound;
+  const Indexed_mesh& mesh = reference.mesh();
+  const std::vector<Vector_3>& points = reference.points();
+  const int n = mesh.number_of_vertices();
+  std::vector<double> bounds(n, default_bound);
+  typedef std::pair<double, int> Entry;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const auto for_each_neighbour = [&](int v, const auto& visit) {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int c = mesh.vertex_corners[k];
+      for(const int w : {mesh.target(c), mesh.source(mesh.previous(c))})
+        visit(w, (points[w] - points[v]).norm());
+    }
+  };
+  std::vector<double> longest(n, 0);
+  for(int v = 0; v < n; ++v)
+    for_each_neighbour(v, [&](int, double length) { longest[v] = (std::max)(longest[v], length); });
+  // vertices that all but coincide are no detail
+  for(int ring = 0; ring < 2; ++ring)
+  {
+    const std::vector<double> before = longest;
+    for(int v = 0; v < n; ++v)
+      for_each_neighbour(v, [&](int w, double) { longest[v] = (std::max)(longest[v], before[w]); });
+  }
+  for(int v = 0; v < n; ++v)
+  {
+    if(mesh.is_isolated(v))
+      continue;
+    double bound = (std::min)(default_bound, longest_part * longest[v]);
+    if(!is_mechanical.empty() && is_mechanical[mesh.face_at(v)])
+    {
+      double shortest = longest[v];
+      for_each_neighbour(v, [&](int, double length) {
+        shortest = length > 0 ? (std::min)(shortest, length) : shortest;
+      });
+      bound = (std::min)(mechanical_bound, shortest_part * shortest);
+    }
+    bounds[v] = (std::max)(least, bound);
+    if(bounds[v] < default_bound)
+      queue.push(Entry(bounds[v], v));
+  }
+  while(!queue.empty())
+  {
+    const Entry e = queue.top();
+    queue.pop();
+    if(e.first > bounds[e.second])
+      continue;
+    for_each_neighbour(e.second, [&](int w, double length) {
+      const double bound = e.first + grading * length;
+      if(bound < bounds[w])
+      {
+        bounds[w] = bound;
+        queue.push(Entry(bound, w));
+      }
+    });
+  }
+  return bounds;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_LOCAL_BOUNDS_H

@@ -1,0 +1,190 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_ROUND_SOLVER_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_ROUND_SOLVER_H
+
+#include <CGAL/Reference_constrained_optimization/Default_visitor.h>
+#include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/commit_round.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/for_each_patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Solves the patches of a round, each from the state before the round, commits what is accepted, and
+// keeps what is known of the state up to date: geometry of faces and samples of drift.
+template <typename ConcurrencyTag, typename Visitor>
+class Round_solver
+{
+public:
+  // what rounds have come to since the last call to `begin_iteration()`
+  struct Progress
+  {
+    std::vector<char> moved;  // per vertex: by more than the tolerance
+    bool has_refused = false; // a patch on the surface
+    // on the surface, summed over the vertices: the parts of their steps that they took, and how many
+    // could move
+    double taken = 0, could_move = 0;
+    double missed = 0; // on the surface: the gain that whole steps had promised
+  };
+
+  Round_solver(Optimization_state& state,
+               const Loop_parameters& parameters,
+               Visitor& visitor,
+               Result& result,
+               Interruption& interruption)
+    : m_state(state),
+      m_movement_tolerance(parameters.movement_tolerance),
+      m_visitor(visitor),
+      m_result(result),
+      m_interruption(interruption),
+      m_for_each([&state, &parameters, &interruption]() {
+        return Patch_solver(state, parameters, &interruption);
+      })
+  {}
+
+  // from the state as it is, before the first round
+  void initialize(Drift_guard guard)
+  {
+    const Indexed_mesh& mesh = m_state.mesh;
+    std::vector<Vector_3> points(mesh.number_of_vertices());
+    for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      points[v] = m_state.vertices[v].position;
+    m_drift_guard = std::move(guard);
+    m_interruption.check();
+    m_geometry.update(mesh, points);
+    m_interruption.check();
+    m_edge_length = vertex_edge_lengths(mesh, points);
+    begin_iteration();
+  }
+
+  void begin_iteration()
+  {
+    m_progress = Progress();
+    m_progress.moved.assign(m_state.mesh.number_of_vertices(), 0);
+  }
+
+  const Progress& progress() const { return m_progress; }
+  const Face_geometry& geometry() const { return m_geometry; }
+  Drift_guard& drift_guard() { return m_drift_guard; }
+  void set_finishing(bool is_finishing) { m_is_finishing = is_finishing; } // for reports
+
+  // false if it was cut short; what was solved by then is committed
+  template <typename Density>
+  bool solve(const std::vector<std::vector<int>>& patches,
+             Moves moves,
+             const Density& density,
+             const Acceptance_test::Limits& limits)
+  {
+    m_visitor.on_round_begin(patches.size());
+    ++m_result.number_of_rounds;
+    std::vector<Solved_patch> solved(patches.size());
+    m_for_each(
+      patches.size(),
+      [&](Patch_solver& solver, std::size_t i) {
+        if(m_interruption.stops())
+          return;
+        try
+        {
+          solver.solve(patches[i], m_state, density, limits, m_drift_guard, moves, solved[i]);
+        }
+        catch(const Interrupted&)
+        {
+          solved[i] = Solved_patch(); // as if it had not been begun
+        }
+      },
+      [&]() { m_interruption.stops(); });
+    commit_round(
+      m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
+      [&](const Solved_patch& s) { update(s); });
+    m_visitor.on_round_end();
+    return !m_interruption.has_stopped();
+  }
+
+private:
+  // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
+  // vertices
+  void update(const Solved_patch& s)
+  {
+    const Patch& patch = s.patch;
+    for(const std::vector<int>* vertices : {&s.outer_vertices, &s.inner_vertices})
+      for(const int i : *vertices)
+      {
+        const int v = patch.vertices[i];
+        const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
+        if(moved > m_movement_tolerance * m_edge_length[v])
+          m_progress.moved[v] = 1;
+      }
+    for(const int f : patch.faces)
+      m_geometry.set(m_state.mesh, f,
+                     [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
+    m_drift_guard.take_back(patch.faces, patch.guests, s.samples);
+  }
+
+  void report(const Solved_patch& s)
+  {
+    ++m_result.number_of_patches;
+    m_result.sum_of_patch_sizes += double(s.number_of_faces);
+    m_result.times.flattening += s.flattening_time;
+    m_result.times.optimization += s.optimization_time;
+    m_result.times.acceptance += s.acceptance_time;
+    if(s.is_flattened)
+    {
+      m_result.conformal_flattenings += s.path == Flattening_path::conformal;
+      m_result.convex_border_flattenings += s.path == Flattening_path::convex_border;
+      m_result.failed_flattenings += s.path == Flattening_path::failed;
+      m_result.overlapping_flattenings += s.overlaps;
+      m_result.sum_of_flattening_distortion += s.distortion;
+    }
+    if(s.decision.accepted)
+      m_state.angle_surplus += s.decision.after.angles - s.decision.before.angles;
+    m_result.number_of_accepted_patches += s.decision.accepted;
+    m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
+    if(s.was_tried && !s.is_flattened)
+    {
+      m_progress.taken += s.taken * s.number_of_free_vertices;
+      m_progress.could_move += s.number_of_free_vertices;
+      m_progress.missed += s.missed;
+    }
+    m_progress.has_refused =
+      m_progress.has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
+
+    Patch_report report;
+    report.number_of_faces = s.number_of_faces;
+    report.energy_before = s.decision.before.energy;
+    report.energy_after = s.decision.after.energy;
+    report.defects_before = std::size_t(s.decision.before.defects());
+    report.defects_after = std::size_t(s.decision.after.defects());
+    report.accepted = s.decision.accepted;
+    report.is_finishing = m_is_finishing;
+    m_visitor.on_patch_end(report);
+  }
+
+  Optimization_state& m_state;
+  double m_movement_tolerance;
+  Visitor& m_visitor;
+  Result& m_result;
+  Interruption& m_interruption;
+  For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
+  Face_geometry m_geometry;
+  std::vector<double> m_edge_length; // per vertex, of the input
+  Drift_guard m_drift_guard;
+  Progress m_progress;
+  bool m_is_finishing = false;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_ROUND_SOLVER_H

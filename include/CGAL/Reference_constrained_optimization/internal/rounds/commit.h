@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_COMMIT_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_COMMIT_H
+
+#include <CGAL/Reference_constrained_optimization/internal/rounds/patch_solver.h>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// folds of the edges between the patch and faces outside it, as the state is now
+inline int boundary_folds(const Optimization_state& state, const Solved_patch& s)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  int count = 0;
+  for(const std::array<int, 2>& faces : s.boundary)
+    count += is_folded(face_normal(state.mesh, vertex, faces[0]),
+                       face_normal(state.mesh, vertex, faces[1]), state.caution);
+  return count;
+}
+
+// swaps some vertices of a patch, given by their local indices, with those of the state
+inline void
+exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& local_vertices)
+{
+  for(const int i : local_vertices)
+    std::swap(state.vertices[s.patch.vertices[i]], s.placed[i]);
+}
+
+// Decides whether an accepted patch stays. Another patch of the round may have moved faces across its
+// boundary since it was judged: what folds there is counted anew. Only the vertices that other patches
+// see are exchanged; `commit_inside()` has to follow if it stays.
+inline void commit_boundary(Optimization_state& state, Solved_patch& s)
+{
+  if(!s.decision.accepted)
+    return;
+  const int folds_before = boundary_folds(state, s);
+  exchange(state, s, s.outer_vertices);
+  const Patch_measure &before = s.decision.before, &after = s.decision.after;
+  const int change =
+    after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
+  const bool is_better = change < 0 || (change == 0 && after.energy < before.energy);
+  if(!is_better && !s.decision.is_final)
+  {
+    exchange(state, s, s.outer_vertices);
+    s.decision.accepted = false;
+    s.decision.after = s.decision.before;
+    return;
+  }
+  s.decision.after.boundary_defects =
+    before.boundary_defects + change - (after.inner_defects - before.inner_defects);
+}
+
+// Exchanges all other vertices of a patch that stays; its `placed` then holds the old ones. Patches of
+// a round may be committed at the same time.
+inline void commit_inside(Optimization_state& state, Solved_patch& s)
+{
+  exchange(state, s, s.inner_vertices);
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_COMMIT_H

@@ -1,0 +1,264 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_OPTIMIZATION_STATE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_OPTIMIZATION_STATE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Element_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Slide_lines.h>
+#include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A vertex as the optimization sees it: its point of R and R's normal there.
+struct Placed_vertex
+{
+  Surface_point on_reference;
+  Vector_3 position = Vector_3::Zero(); // differs from on_reference for constrained vertices off R
+  Vector_3 normal = Vector_3::Zero();
+  Line_point on_line; // of vertices that slide
+};
+
+// Puts a vertex at its point of a line; false if R is not found there on the same sheet.
+inline bool
+place_on_line(const Slide_lines& lines, const Reference_surface& reference, Placed_vertex& vertex)
+{
+  const int face = lines[vertex.on_line.segment].face;
+  const Surface_point foot =
+    reference.descend(lines.position(vertex.on_line), face >= 0 ? face : vertex.on_reference.face);
+  const Vector_3 normal = reference.normal(foot);
+  if(!(normal.dot(vertex.normal) > 0))
+    return false;
+  vertex.on_reference = foot;
+  vertex.position = foot.position;
+  vertex.normal = normal;
+  return true;
+}
+
+// What the caller constrained.
+struct Constraints
+{
+  std::vector<char> is_constrained; // per vertex: by itself
+  std::vector<char> is_line;        // per corner: its edge is constrained or at the border
+};
+
+// The mesh on its reference: what movers read, and what accepted patches change.
+struct Optimization_state
+{
+  const Indexed_mesh& mesh;
+  const Reference_surface& reference;
+  const Element_set& elements;
+  std::vector<Placed_vertex> vertices;
+  std::vector<char> is_free;
+  Slide_lines lines = {};
+  // per vertex that slides: its two neighbours on its line in the mesh; else -1
+  std::vector<std::array<int, 2>> line_neighbours = {};
+  std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
+  // A cosine: what comes as close as that to being turned over or folded counts as if it were. Where
+  // coordinates were rounded to a frame this cannot have hidden anything then.
+  double caution = 0;
+  // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
+  // mesh, whether its turn against R is bounded, and per corner, whether its edge hardly turns on input and
+  // must not become sharp; empty if there are none
+  std::vector<char> is_mechanical = {}, bounds_turn = {}, is_smooth = {};
+
+  // The mean of the faces' smallest angles may not fall below the input's if the energy is about angles: by
+  // how much their sum is above, in degrees.
+  bool guards_angles = false;
+  double angle_surplus = 0;
+
+  bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
+
+  // what is not optimized may be where it likes
+  bool has_face_that_counts(int v) const
+  {
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      if(counts(mesh.corner_face[mesh.vertex_corners[k]]))
+        return true;
+    return false;
+  }
+};
+
+// Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
+// whether an edge is folded, for vertices given by a function `vertex(v)` that returns a
+// Placed_vertex. Degenerate faces count in none.
+template <typename VertexAccess>
+Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  const int begin = mesh.face_begin[f], end = mesh.face_begin[f + 1];
+  const Vector_3& o = vertex(mesh.corner_vertex[begin]).position;
+  Vector_3 n = Vector_3::Zero();
+  for(int c = begin + 1; c + 1 < end; ++c)
+    n += (vertex(mesh.corner_vertex[c]).position - o)
+           .cross(vertex(mesh.corner_vertex[c + 1]).position - o);
+  return n;
+}
+
+template <typename VertexAccess>
+bool is_flipped(const Indexed_mesh& mesh,
+                const VertexAccess& vertex,
+                int f,
+                const Vector_3& normal,
+                double caution)
+{
+  Vector_3 sum = Vector_3::Zero();
+  for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+    sum += vertex(mesh.corner_vertex[c]).normal;
+  const double d = normal.dot(sum);
+  return d < 0 || d * d < caution * caution * normal.squaredNorm() * sum.squaredNorm();
+}
+
+template <typename VertexAccess>
+bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  if(mesh.degree(f) == 3)
+    return false;
+  for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+  {
+    const Placed_vertex &before = vertex(mesh.source(mesh.previous(c))),
+                        &here = vertex(mesh.source(c)), &after = vertex(mesh.target(c));
+    const Vector_3 normal = (after.position - here.position).cross(before.position - here.position);
+    if(normal.dot(before.normal + here.normal + after.normal) < 0)
+      return true;
+  }
+  return false;
+}
+
+inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution)
+{
+  return normal_a.dot(normal_b) < (caution - 0.5) * normal_a.norm() * normal_b.norm();
+}
+
+// Jacobian of one element on the surface
+template <typename VertexAccess>
+Eigen::Matrix2d element_jacobian(const Element_set::Element& element, const VertexAccess& vertex)
+{
+  const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
+                      &c = vertex(element.vertices[2]);
+  const Eigen::Matrix2d S =
+    signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal);
+  const auto& R = element.rest_inverse;
+  // S is upper triangular; entry by entry, as vectors would have to wait for what was just stored
+  Eigen::Matrix2d J;
+  J(0, 0) = S(0, 0) * R(0, 0) + S(0, 1) * R(1, 0);
+  J(1, 0) = S(1, 1) * R(1, 0);
+  J(0, 1) = S(0, 0) * R(0, 1) + S(0, 1) * R(1, 1);
+  J(1, 1) = S(1, 1) * R(1, 1);
+  return J;
+}
+
+// density of one element on the surface
+template <typename Density, typename VertexAccess>
+double element_energy(const Density& density,
+                      const Element_set::Element& element,
+                      const VertexAccess& vertex)
+{
+  return density.value(element_jacobian(element, vertex));
+}
+
+// cosine of the smallest angle of a triangle, given by its three vertices; 1 if a side has no length
+template <typename VertexAccess>
+double smallest_angle_cosine(const int* corners, const VertexAccess& vertex)
+{
+  Vector_3 sides[3]; // from each vertex to the next
+  double lengths[3];
+  for(int i = 0; i < 3; ++i)
+  {
+    sides[i] = vertex(corners[(i + 1) % 3]).position - vertex(corners[i]).position;
+    lengths[i] = sides[i].norm();
+  }
+  double largest = -1;
+  for(int i = 0; i < 3; ++i)
+  {
+    const int before = (i + 2) % 3;
+    const double product = lengths[i] * lengths[before];
+    largest = (std::max)(largest, product > 0 ? -sides[i].dot(sides[before]) / product : 1.);
+  }
+  return largest;
+}
+
+// The same of a face. Angles of quads are nothing that anybody asks about here: -1 there.
+template <typename VertexAccess>
+double smallest_angle_cosine(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
+{
+  return mesh.degree(f) == 3
+           ? smallest_angle_cosine(&mesh.corner_vertex[mesh.face_begin[f]], vertex)
+           : -1;
+}
+
+// Figures of the whole mesh. Sums run in the order of the faces, block by block.
+struct Global_measure
+{
+  double energy = 0;        // sum of densities
+  double capped_energy = 0; // the same, each density capped
+  double worst = 0;         // largest density of an element that is not inverted
+  double sharpest = -1;     // largest cosine of an angle of a triangle with an element
+  std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
+  std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
+};
+
+template <typename ConcurrencyTag, typename Density>
+Global_measure measure(const Optimization_state& state, const Density& density, double cap)
+{
+  const Indexed_mesh& mesh = state.mesh;
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const int n = mesh.number_of_faces();
+  std::vector<Vector_3> normals(n);
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
+    for(int f = begin; f < end; ++f)
+      normals[f] = face_normal(mesh, vertex, f);
+  });
+  std::vector<Global_measure> parts(number_of_blocks(n));
+  for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
+    Global_measure& m = parts[block];
+    for(int f = begin; f < end; ++f)
+    {
+      m.flips += is_flipped(mesh, vertex, f, normals[f], state.caution);
+      m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        if(mesh.opposite[c] > c)
+          m.fold_edges +=
+            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution);
+      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+      {
+        const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
+        const double d = density.value(J);
+        m.energy += d;
+        m.capped_energy += (std::min)(d, cap);
+        if(J.determinant() > 0)
+          m.worst = (std::max)(m.worst, d);
+      }
+      if(state.elements.begin(f) < state.elements.end(f))
+        m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(mesh, vertex, f));
+    }
+  });
+  Global_measure sum;
+  for(const Global_measure& m : parts)
+  {
+    sum.energy += m.energy;
+    sum.capped_energy += m.capped_energy;
+    sum.worst = (std::max)(sum.worst, m.worst);
+    sum.sharpest = (std::max)(sum.sharpest, m.sharpest);
+    sum.flips += m.flips;
+    sum.fold_edges += m.fold_edges;
+    sum.nonconvex_quads += m.nonconvex_quads;
+  }
+  return sum;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_OPTIMIZATION_STATE_H

@@ -1,0 +1,250 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_PATCH_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_PATCH_H
+
+#include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/drift_barrier.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// A disk of faces with local indices: everything that movers and the acceptance test need of it.
+struct Patch
+{
+  std::vector<int> faces;    // of the whole mesh
+  std::vector<int> vertices; // of the whole mesh
+
+  Indexed_mesh polygons;         // the faces, in local vertices
+  std::vector<int> outside_face; // per corner of polygons: face of the mesh across it if that
+                                 // is not in the patch, else -1
+  std::vector<char> is_free;     // per local vertex
+  int number_of_free_vertices = 0;
+  std::vector<Placed_vertex> placed; // per local vertex, as they are now
+  // per local vertex that slides: its neighbours on its line, in local vertices; else -1. Empty if
+  // none slides.
+  std::vector<std::array<int, 2>> line_neighbours;
+  const Slide_lines* lines = nullptr;
+  bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
+  double caution = 0; // see Optimization_state
+  // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
+  std::vector<char> bounds_turn, is_smooth;
+  std::vector<Element_set::Element> elements; // in local vertices
+  std::vector<int> element_begin;             // per face: its first element; and their number
+  // by how much the sum of the faces' smallest angles may fall, in degrees
+  double angle_allowance = std::numeric_limits<double>::infinity();
+
+  // the faces split into triangles, for flattening and location
+  const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
+
+  // the face of polygons() that a triangle is part of, and the first triangle of such a face
+  int polygon_of(int triangle) const { return is_split ? split_polygon[triangle] : triangle; }
+  int triangle_of(int polygon) const { return is_split ? first_triangle[polygon] : polygon; }
+
+  bool is_split = false;
+  Indexed_mesh split;
+  std::vector<int> split_polygon, first_triangle;
+
+  // The samples of the drift barrier; none if it is off. Directions are unit vectors from R to the
+  // mesh, known where the barrier is felt.
+  Drift_barrier barrier;
+  double drift_bound = 0;
+  const std::vector<double>* local_bounds =
+    nullptr;                        // per triangle of R, if it is not the same everywhere
+  std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
+  // of a sample of a triangle of the patch whose closest point is in a triangle of R
+  double bound_of(int triangle, int reference_face) const
+  {
+    const double bound = local_bounds ? (*local_bounds)[reference_face] : drift_bound;
+    return least_bounds.empty() ? bound : (std::max)(bound, least_bounds[polygon_of(triangle)]);
+  }
+
+  // a point of the mesh, see drift_samples.h
+  struct Sample
+  {
+    int face = -1; // of R, where its closest point is
+    double distance = 0;
+    double bound = 0; // there
+    Vector_3 direction = Vector_3::Zero();
+  };
+  std::vector<Sample> samples;
+
+  // a point of R whose closest point of the mesh is in the patch
+  struct Guest
+  {
+    int witness;     // of R
+    int polygon;     // local face that holds its closest point
+    double distance; // to it
+    double bound;
+    int triangle = -1; // local
+    Vector_3 barycentric = Vector_3::Zero();
+    Vector_3 direction = Vector_3::Zero();
+  };
+  std::vector<Guest> guests;
+};
+
+// Builds patches; keeps its index maps from call to call.
+class Patch_builder
+{
+public:
+  explicit Patch_builder(const Indexed_mesh& mesh)
+    : m_face_stamp(mesh.number_of_faces(), 0),
+      m_vertex_stamp(mesh.number_of_vertices(), 0),
+      m_local(mesh.number_of_vertices(), -1),
+      m_local_corner(mesh.number_of_faces(), -1)
+  {}
+
+  Patch build(const std::vector<int>& faces, const Optimization_state& state)
+  {
+    const Indexed_mesh& mesh = state.mesh;
+    ++m_stamp;
+    Patch patch;
+    patch.faces = faces;
+    patch.caution = state.caution;
+    std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
+    begins.reserve(faces.size() + 1);
+    for(const int f : faces)
+    {
+      m_face_stamp[f] = m_stamp;
+      m_local_corner[f] = begins.back();
+      begins.push_back(begins.back() + mesh.degree(f));
+    }
+    corners.reserve(begins.back());
+    opposites.reserve(begins.back());
+    patch.outside_face.reserve(begins.back());
+    const std::size_t enough = std::size_t(begins.back()) / 4; // vertices, most often: fewer copies
+    patch.placed.reserve(enough);
+    patch.vertices.reserve(enough);
+    corners_in_patch.reserve(enough);
+    patch.elements.reserve(begins.back() - 2 * faces.size()); // triangles
+    patch.element_begin.reserve(faces.size() + 1);
+    for(const int f : faces)
+    {
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      {
+        const int v = mesh.corner_vertex[c];
+        if(m_vertex_stamp[v] != m_stamp)
+        {
+          m_vertex_stamp[v] = m_stamp;
+          m_local[v] = int(patch.vertices.size());
+          patch.vertices.push_back(v);
+          patch.placed.push_back(state.vertices[v]);
+          corners_in_patch.push_back(0);
+        }
+        ++corners_in_patch[m_local[v]];
+        corners.push_back(m_local[v]);
+        if(!state.is_smooth.empty())
+          patch.is_smooth.push_back(state.is_smooth[c]);
+        const int o = mesh.opposite[c];
+        const int g = o < 0 ? -1 : mesh.corner_face[o];
+        const bool is_inside = g >= 0 && m_face_stamp[g] == m_stamp;
+        patch.outside_face.push_back(is_inside ? -1 : g);
+        opposites.push_back(is_inside ? m_local_corner[g] + o - mesh.face_begin[g] : -1);
+      }
+      patch.element_begin.push_back(int(patch.elements.size()));
+      for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
+      {
+        Element_set::Element element = state.elements[e];
+        for(int& v : element.vertices)
+          v = m_local[v];
+        patch.elements.push_back(element);
+      }
+      patch.is_split = patch.is_split || mesh.degree(f) > 3;
+      if(!state.bounds_turn.empty())
+        patch.bounds_turn.push_back(state.bounds_turn[f]);
+    }
+    patch.element_begin.push_back(int(patch.elements.size()));
+    // where much was won there is nothing to fear
+    const double surplus = state.angle_surplus / double(mesh.number_of_faces()),
+                 much = 1; // degrees
+    if(state.guards_angles && surplus < much)
+      patch.angle_allowance = (std::max)(0., surplus) * double(faces.size());
+    const int n = int(patch.vertices.size());
+    patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
+    patch.is_free.reserve(n);
+    for(int i = 0; i < n; ++i)
+    {
+      const int v = patch.vertices[i];
+      const bool is_inside = corners_in_patch[i] == mesh.vertex_begin[v + 1] - mesh.vertex_begin[v];
+      patch.is_free.push_back(state.is_free[v] && is_inside);
+      patch.number_of_free_vertices += patch.is_free.back();
+    }
+    collect_sliding(state, patch);
+    if(patch.is_split)
+      split(patch);
+    return patch;
+  }
+
+private:
+  // all faces of a vertex that slides in the patch are in it, and so are its neighbours
+  void collect_sliding(const Optimization_state& state, Patch& patch) const
+  {
+    patch.lines = &state.lines;
+    if(state.line_neighbours.empty())
+      return;
+    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
+    {
+      const std::array<int, 2>& next_to = state.line_neighbours[patch.vertices[i]];
+      if(!patch.is_free[i] || next_to[0] < 0)
+        continue;
+      if(patch.line_neighbours.empty())
+        patch.line_neighbours.assign(patch.vertices.size(), {{-1, -1}});
+      patch.line_neighbours[i] = {{m_local[next_to[0]], m_local[next_to[1]]}};
+    }
+  }
+
+  static void split(Patch& patch)
+  {
+    std::vector<Vector_3> points;
+    for(const Placed_vertex& p : patch.placed)
+      points.push_back(p.position);
+    const auto split_polygon = [&](int f) { return split_flat(patch.polygons, points, f); };
+    patch.split = split_mesh(patch.polygons, split_polygon, [&](int f) {
+      if(patch.split_polygon.empty() || patch.split_polygon.back() != f)
+        patch.first_triangle.push_back(int(patch.split_polygon.size()));
+      patch.split_polygon.push_back(f);
+    });
+  }
+
+  // along the shorter diagonal, unless a quad that is not convex would be folded by it
+  static std::vector<std::array<int, 3>>
+  split_flat(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+  {
+    std::vector<std::array<int, 3>> triangles = split_face(mesh, points, f);
+    if(triangles.size() == 1)
+      return triangles;
+    const auto normal = [&](const std::array<int, 3>& t) {
+      const Vector_3& o = points[mesh.corner_vertex[t[0]]];
+      const Vector_3 a = points[mesh.corner_vertex[t[1]]] - o;
+      return Vector_3(a.cross(points[mesh.corner_vertex[t[2]]] - o));
+    };
+    if(normal(triangles[0]).dot(normal(triangles[1])) < 0)
+    {
+      const int c = mesh.face_begin[f];
+      const bool was_first = triangles[0][2] == c + 2;
+      triangles = was_first ? decltype(triangles){{{c, c + 1, c + 3}}, {{c + 1, c + 2, c + 3}}}
+                            : decltype(triangles){{{c, c + 1, c + 2}}, {{c, c + 2, c + 3}}};
+    }
+    return triangles;
+  }
+
+  std::vector<int> m_face_stamp, m_vertex_stamp, m_local;
+  std::vector<int> m_local_corner; // per face: its first corner in the patch
+  int m_stamp = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_PATCH_H
