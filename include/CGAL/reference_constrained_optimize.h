@@ -107,10 +107,11 @@ namespace CGAL {
  *     \cgalParamDescription{whether the feature edges of the reference are detected, see
  *                           `Reference_constrained_optimization::detect_features()`, and kept. Vertices of
  *                           edges of `mesh` that lie along them slide along them; ends, junctions,
- *                           turns of a line by more than 60 degrees, and tips stay. On components of the reference
+ *                           turns of a line by more than 19 degrees, and tips stay. On components of the reference
  *                           that are mechanical parts faces are kept from turning away from it by more
  *                           than 20 degrees, edges that turn by less than 20 degrees from turning by more
- *                           than 38, and the drift bound is a fifth of what it is elsewhere. No feature is detected where `edge_is_constrained_map` is given, for
+ *                           than 38, the volume from changing by more than 0.8 percent (unless there is a border), and the drift
+ *                           bound is a fifth of what it is elsewhere. No feature is detected where `edge_is_constrained_map` is given, for
  *                           `mesh` or for `reference`}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}

@@ -172,14 +172,6 @@ double capped_energy(const Shape& source,
   return sum / double(source.faces.size());
 }
 
-double volume(const Shape& s)
-{
-  double sum = 0;
-  for(const std::vector<int>& t : s.faces)
-    sum += s.points[t[0]].dot(s.points[t[1]].cross(s.points[t[2]])) / 6;
-  return sum;
-}
-
 // the same faces in the same order; each may start at another of its vertices
 bool same_connectivity(const Shape& a, const Shape& b)
 {

@@ -217,6 +217,36 @@ void test_strips()
     }
 }
 
+// Rounds of few edges, and sheets that are thin against their edges.
+void test_coarse_parts()
+{
+  const Scope scope("coarse parts");
+  // edges of 36 and 40 degrees are no noise, and one of nine turns by 40 but for rounding
+  for(const int columns : {9, 10, 12})
+    for(const int rows : {1, 5})
+    {
+      const Shape start = closed_cylinder(columns, rows, 1, 3);
+      const Mesh before = make_mesh<Mesh>(start);
+      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), number_of_features(start));
+      const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
+      const Mesh mesh = make_mesh<Mesh>(after.shape);
+      RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
+      RCO_CHECK_LESS(0.95, RCO::feature_deviation(before, mesh).kept);
+      RCO_CHECK_LESS(RCO::normal_deviation(mesh, before).share_above_20, 0.005);
+    }
+  // sleeves: neither do the walls meet, nor does the volume change
+  for(const double wall : {0.02, 0.2})
+    for(const unsigned int seed : {0, 1, 2, 3})
+    {
+      const Shape start = sleeve(24, 4, 3, wall, 6);
+      const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(seed));
+      RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
+      RCO_CHECK_EQUAL(RCO::number_of_self_intersecting_pairs(make_mesh<Mesh>(after.shape)),
+                      std::size_t(0));
+      RCO_CHECK_LESS_EQUAL(mean_smallest_angle(start), mean_smallest_angle(after.shape) + 1e-9);
+    }
+}
+
 // Nowhere more than the default, nor than a part of what is there, and no jumps.
 void test_local_bounds()
 {
@@ -250,6 +280,7 @@ int main()
   test_folds();
   test_keeping();
   test_strips();
+  test_coarse_parts();
   test_local_bounds();
   return report();
 }

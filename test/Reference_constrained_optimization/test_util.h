@@ -204,6 +204,15 @@ struct Shape
   }
 };
 
+// of triangles
+inline double volume(const Shape& s)
+{
+  double sum = 0;
+  for(const std::vector<int>& t : s.faces)
+    sum += s.points[t[0]].dot(s.points[t[1]].cross(s.points[t[2]])) / 6;
+  return sum;
+}
+
 inline Indexed_mesh indexed(const Shape& shape)
 {
   std::vector<int> begins(1, 0), corners;
@@ -307,6 +316,25 @@ inline Shape closed_cylinder(int columns, int rows, double radius, double height
     s.triangle(j, i, bottom);
     s.triangle(rows * columns + i, rows * columns + j, top);
   }
+  return s;
+}
+
+// a tube with a wall
+inline Shape sleeve(int columns, int rows, double radius, double wall, double height)
+{
+  Shape s;
+  const int rings = 2 * (rows + 1);
+  for(int j = 0; j < rings; ++j)
+    for(int i = 0; i < columns; ++i)
+    {
+      const bool is_outside = j <= rows;
+      const double r = is_outside ? radius : radius - wall, a = 2 * pi * i / columns;
+      s.add(r * std::cos(a), r * std::sin(a), height * (is_outside ? j : rings - 1 - j) / rows);
+    }
+  const auto at = [&](int i, int j) { return (j % rings) * columns + i % columns; };
+  for(int j = 0; j < rings; ++j)
+    for(int i = 0; i < columns; ++i)
+      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
   return s;
 }
 

@@ -30,7 +30,11 @@ struct Feature_report
 {
   bool has_features = false;               ///< whether an edge was marked.
   std::size_t number_of_feature_edges = 0; ///< edges that were marked.
-  /// length of the sharp edges (that turn by more than 40 degrees) over the square root of the area; up to
+  /// the share of the area in faces with a neighbour that goes on in the same plane (turned by less than
+  /// half a degree): what planes, cylinders and cones are tessellated with, however coarsely; above 0.8 it is
+  /// a part if `amount_of_sharp_edges` is above 0.25 or `turned_share` above 0.1.
+  double flat_share = 0;
+  /// length of the sharp edges (that turn by 40 degrees or more) over the square root of the area; up to
   /// 0.25 there is too little to tell.
   double amount_of_sharp_edges = 0;
   /// the share of the length of sharp edges beside which the surface turns by less than a third of what
@@ -48,11 +52,11 @@ struct Feature_report
  *
  * marks the feature edges of a surface: the sharp edges of mechanical parts.
  *
- * On a mechanical part edges are either sharp or hardly turned at all, and sharp edges are lines with
- * smooth ground on both sides; on a scan, an organic shape or a coarse mesh of one, edges turn by all
+ * A mechanical part is made of planes and strips, or its edges are either sharp or hardly turned at all, and
+ * sharp edges are lines with smooth ground on both sides; on a scan, an organic shape or a coarse mesh of one, edges turn by all
  * angles, and sharp ones lie among others that are nearly as sharp. Each connected component is judged
  * by itself, by the shares that `Feature_report` holds. Of a part all edges are features at which the
- * surface turns by more than 40 degrees, but for folds: those that turn by more than 120 degrees and have
+ * surface turns by 40 degrees or more, but for folds: those that turn by more than 120 degrees and have
  * a face that is turned against the sum of the normals at its vertices.
  *
  * `CGAL::reference_constrained_optimize()` calls it for the reference unless its parameter
@@ -86,6 +90,7 @@ Feature_report detect_features(const FaceGraph& mesh,
   const std::vector<char> is_feature =
     internal::features_of_polygons(copy.mesh, surface, features.is_feature);
   Feature_report report;
+  report.flat_share = features.evidence.flat_share();
   report.amount_of_sharp_edges = features.evidence.amount();
   report.crisp_share = features.evidence.crisp_share();
   report.sharp_share = features.evidence.sharp_share();

@@ -148,7 +148,7 @@ void optimize(const FaceRange& range,
     constrain(is_same ? features_of_polygons(copy.mesh, surface, features.is_feature)
                       : traced_features(copy.mesh, copy.points, surface, features.is_feature),
               copy.mesh, constraints, result);
-  if(features.number_of_edges > 0 && is_same)
+  if(!features.is_mechanical.empty() && is_same)
     constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
   place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
@@ -156,7 +156,12 @@ void optimize(const FaceRange& range,
   state.is_mechanical = std::move(features.is_mechanical);
   state.bounds_turn = faces_on(state, state.is_mechanical);
   if(!state.bounds_turn.empty())
+  {
     state.is_smooth = smooth_edges(state);
+    const double largest_part = 0.008; // of the volume
+    if(!copy.mesh.has_border())
+      state.largest_volume_change = largest_part * std::abs(volume_of_parts(state));
+  }
   // nothing of R would be closest to such a mesh
   if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
@@ -205,7 +210,8 @@ void optimize(const FaceRange& range,
              (std::max)(Drift_barrier::last_part * result.drift_bound, result.initial_drift);
     };
     // next to what has returned faces may be stretched
-    while(mending.has_mended() && (has_risen() || has_drifted()) && mending.grow())
+    while(mending.has_mended() && (has_risen() || has_drifted() || mending.has_lowered_angles()) &&
+          mending.grow())
     {
       mending.run();
       final = view.measure<ConcurrencyTag>(density);

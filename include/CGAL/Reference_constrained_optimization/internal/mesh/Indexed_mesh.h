@@ -42,6 +42,10 @@ public:
   std::vector<int> vertex_begin;  // first entry of each vertex in vertex_corners
   std::vector<int> vertex_corners; // corners at each vertex, ascending
   std::vector<char> is_border_vertex;
+  bool has_border() const
+  {
+    return std::find(is_border_vertex.begin(), is_border_vertex.end(), 1) != is_border_vertex.end();
+  }
 
   Indexed_mesh() = default;
 

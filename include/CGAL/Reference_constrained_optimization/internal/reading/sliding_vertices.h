@@ -38,6 +38,7 @@ public:
                    double resolution,
                    Result& result)
     : m_state(state),
+      m_cosine_of_sharp_turn(result.number_of_feature_edges > 0 ? cosine_on_parts : 0.5),
       m_touching((std::max)(1e-9 * state.reference.diagonal(), 4 * resolution)),
       m_result(result)
   {
@@ -49,7 +50,8 @@ public:
         edges.push_back({{mesh.source(c), mesh.target(c)}});
     const auto position = [&](int v) { return state.vertices[v].on_reference.position; };
     state.line_neighbours = line_neighbours(
-      edges, n, position, [&](int v) { return constraints.is_constrained[v] != 0; });
+      edges, n, position, [&](int v) { return constraints.is_constrained[v] != 0; },
+      m_cosine_of_sharp_turn);
 
     if(relaxes_border)
       slide_on(lines.border, [&](int v) { return mesh.is_border_vertex[v] != 0; });
@@ -64,6 +66,9 @@ public:
   }
 
 private:
+  // 19 degrees: arcs of less than 19 vertices a turn keep all of them, as chords would cut them short
+  static constexpr double cosine_on_parts = 0.9455;
+
   // lines of R
   template <typename IsMeant>
   void slide_on(const Line_edges& edges, const IsMeant& is_meant)
@@ -73,7 +78,9 @@ private:
     const auto position = [&](int v) { return points[v]; };
     const std::size_t first = m_state.lines.segments().size();
     add_lines(
-      edges, line_neighbours(edges, int(points.size()), position, [](int) { return false; }),
+      edges,
+      line_neighbours(
+        edges, int(points.size()), position, [](int) { return false; }, m_cosine_of_sharp_turn),
       position, [&](int v, int w) { return reference.face_at(v, w); }, m_state.lines);
     std::vector<Kernel::Segment_3> segments;
     std::vector<int> line_segment; // of each of them
@@ -171,6 +178,7 @@ private:
   }
 
   Optimization_state& m_state;
+  double m_cosine_of_sharp_turn;
   double m_touching;
   Result& m_result;
 };

@@ -27,6 +27,7 @@ struct Feature_evidence
   double crisp_length = 0; // of those beside which the surface turns by less than a third of that
   std::size_t sharp_edges = 0, turned_edges = 0; // that turn by more than 40, 20 degrees
   std::size_t edges = 0;
+  double flat_area = 0; // of faces with a neighbour that goes on in the same plane
 
   // without unit; lines that are short against the size of a component say nothing about it
   double amount() const { return area > 0 ? sharp_length / std::sqrt(area) : 0; }
@@ -35,12 +36,15 @@ struct Feature_evidence
   {
     return turned_edges > 0 ? double(sharp_edges) / double(turned_edges) : 0;
   }
+  double flat_share() const { return area > 0 ? flat_area / area : 0; }
   double turned_share() const { return edges > 0 ? double(turned_edges) / double(edges) : 0; }
-  // sharp edges are lines, or hardly any edge is turned that is not sharp, or few are and most edges are
-  // not turned at all
+  // it is made of planes and strips; or sharp edges are lines, or hardly any edge is turned that is not
+  // sharp, or few are and most edges are not turned at all
   bool is_mechanical() const
   {
-    return amount() > 0.25 && (crisp_share() > 0.92 || sharp_share() > 0.65 ||
+    if(flat_share() > 0.8 && turned_share() > 0.1)
+      return true;
+    return amount() > 0.25 && (flat_share() > 0.8 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
                                (sharp_share() > 0.4 && turned_share() < 0.25));
   }
 };
@@ -79,13 +83,14 @@ public:
 
   Detected_features take()
   {
-    if(m_result.number_of_edges == 0)
+    if(!m_has_parts)
       m_result.is_mechanical.clear();
     return std::move(m_result);
   }
 
 private:
-  static constexpr double sharp_turn = 40, small_turn = 20; // degrees
+  // degrees; a regular polygon of nine vertices turns by 40, but for rounding
+  static constexpr double sharp_turn = 39.9, small_turn = 20, no_turn = 0.5;
 
   void measure_turns()
   {
@@ -120,6 +125,10 @@ private:
     for(const int f : component)
     {
       e.area += 0.5 * m_surface.face_normal(f).norm();
+      bool goes_on = false;
+      for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+        goes_on = goes_on || (m_mesh.opposite[c] >= 0 && m_turn[c] < no_turn);
+      e.flat_area += goes_on ? 0.5 * m_surface.face_normal(f).norm() : 0;
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
       {
         if(m_mesh.opposite[c] < c)
@@ -142,6 +151,7 @@ private:
       m_result.evidence = e;
     if(!is_mechanical)
       return;
+    m_has_parts = true;
     for(const int f : component)
       m_result.is_mechanical[f] = 1;
     for(const int c : sharp)
@@ -215,6 +225,7 @@ private:
   const Indexed_mesh& m_mesh;
   std::vector<double> m_turn; // per corner: of its edge, in degrees
   std::vector<double> m_beside;
+  bool m_has_parts = false;
   Detected_features m_result;
 };
 

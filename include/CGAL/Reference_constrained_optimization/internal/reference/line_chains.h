@@ -25,9 +25,9 @@ template <typename PointAccess, typename Stays>
 std::vector<std::array<int, 2>> line_neighbours(const Line_edges& edges,
                                                 int number_of_vertices,
                                                 const PointAccess& position,
-                                                const Stays& stays)
+                                                const Stays& stays,
+                                                double cosine_of_sharp_turn)
 {
-  const double cosine_of_sharp_turn = 0.5;
   std::vector<std::array<int, 2>> neighbours(number_of_vertices, {{-1, -1}});
   std::vector<int> count(number_of_vertices, 0);
   for(const std::array<int, 2>& e : edges)

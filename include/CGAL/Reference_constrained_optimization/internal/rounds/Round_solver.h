@@ -148,6 +148,7 @@ private:
     }
     if(s.decision.accepted)
       m_state.angle_surplus += s.decision.after.angles - s.decision.before.angles;
+    m_state.volume_change += s.decision.after.volume - s.decision.before.volume;
     m_result.number_of_accepted_patches += s.decision.accepted;
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
     if(s.was_tried && !s.is_flattened)

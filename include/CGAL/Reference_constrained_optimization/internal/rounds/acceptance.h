@@ -26,6 +26,7 @@ struct Patch_measure
   double energy = 0;
   double drift_energy = 0;  // what the drift barrier adds
   double angles = 0;        // sum of the faces' smallest, in degrees, where their mean may not fall
+  double volume = 0;        // six times that of the cones over its faces, where that is bounded
   int inner_defects = 0;    // flips, quads that are not convex, and folds of edges inside
   int boundary_defects = 0; // folds of edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -86,7 +87,10 @@ public:
       std::swap(m_before, m_after);
     }
     if(is_first)
+    {
       m_least_angles = decision.before.angles - patch.angle_allowance;
+      m_initial_volume = decision.before.volume;
+    }
     m_after = m_before;
     forget_offenders();
     m_steps.start(patch);
@@ -111,8 +115,12 @@ public:
       // a defect that is mended may cost
       const double price = 60. * (std::max)(0, -defects);
       const bool keeps_angles = decision.after.angles >= m_least_angles - price;
+      const double gain = decision.after.volume - m_initial_volume;
+      const bool grows = gain > patch.largest_volume_gain,
+                 shrinks = -gain > patch.largest_volume_loss;
+      const bool keeps_sums = keeps_angles && !grows && !shrinks;
       if(m_limits.accepts_all ||
-         (!exceeds && keeps_angles && (defects < 0 || (defects == 0 && falls))))
+         (!exceeds && keeps_sums && (defects < 0 || (defects == 0 && falls))))
       {
         decision.accepted = true;
         decision.is_final = m_limits.accepts_all;
@@ -121,7 +129,9 @@ public:
       }
       if(defects <= 0 && !exceeds)
       {
-        if(keeps_angles)
+        if(grows || shrinks)
+          find_sweeping(patch, grows ? 1 : -1);
+        else if(keeps_angles)
           find_risen(patch, decision);
         else
           find_sharper(patch);
@@ -153,6 +163,7 @@ private:
     std::vector<char> folded;      // per corner, at the first of the two of an edge
     std::vector<double> densities; // per element
     std::vector<double> cosines;   // per face: cosine of its smallest angle
+    std::vector<double> volumes;   // per face, if they are bounded
     // where the turn of faces is bounded: per face, in degrees, and per corner the cosine of that of its
     // edge, at the first of the two
     std::vector<double> turns, edge_turns;
@@ -171,6 +182,7 @@ private:
     m_before.folded.assign(patch.polygons.number_of_corners(), 0);
     m_before.densities.resize(patch.elements.size());
     m_before.cosines.resize(n);
+    m_before.volumes.assign(patch.guards_volume() ? n : 0, 0);
     m_before.turns.assign(patch.bounds_turn.size(), 0);
     m_before.edge_turns.assign(patch.bounds_turn.empty() ? 0 : patch.outside_face.size(), 1);
     m_is_changed.assign(n, 0);
@@ -200,6 +212,9 @@ private:
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         details.densities[e] = element_energy(density, patch.elements[e], vertex);
       details.cosines[f] = smallest_angle_cosine(mesh, vertex, f);
+      if(patch.guards_volume() && patch.bounds_turn[f])
+        details.volumes[f] =
+          face_volume(mesh, vertex, f, details.normals[f], patch.placed[0].position);
     }
     for(const int f : m_changed)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -233,6 +248,8 @@ private:
     if(std::isfinite(patch.angle_allowance))
       for(const double c : details.cosines)
         m.angles += degrees(c);
+    for(const double v : details.volumes)
+      m.volume += v;
     for(const char flipped : details.flipped)
       m.inner_defects += flipped;
     for(std::size_t c = 0; c < details.folded.size(); ++c)
@@ -293,8 +310,9 @@ private:
     }
     for(int f = 0; f < mesh.number_of_faces(); ++f)
     {
-      const double cosine = m_after.cosines[f];
-      if(cosine > m_limits.sharpest && cosine > m_before.cosines[f])
+      // what is as sharp as the limit must not be found sharper when it is rounded
+      const double cosine = m_after.cosines[f], old = m_before.cosines[f], rounding = 1e-12;
+      if(cosine > m_limits.sharpest - rounding && cosine > old - rounding && cosine != old)
       {
         exceeds = true;
         add_face(mesh, f);
@@ -356,6 +374,32 @@ private:
     for(int f = 0; f < patch.polygons.number_of_faces(); ++f)
       if(degrees(m_after.cosines[f]) < degrees(m_before.cosines[f]) - little)
         add_face(patch.polygons, f);
+  }
+
+  // where the volume grows (sign 1) or shrinks (-1) too much: the vertices that contribute most
+  void find_sweeping(const Patch& patch, double sign)
+  {
+    const Indexed_mesh& mesh = patch.polygons;
+    m_swept.assign(patch.vertices.size(), 0);
+    double sum = 0;
+    int number = 0;
+    for(std::size_t v = 0; v < m_swept.size(); ++v)
+    {
+      if(!patch.is_free[v])
+        continue;
+      Vector_3 normal = Vector_3::Zero();
+      for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+        normal += m_before.normals[mesh.corner_face[mesh.vertex_corners[k]]];
+      m_swept[v] = sign * normal.dot(m_candidate[v].position - patch.placed[v].position);
+      if(m_swept[v] > 0)
+      {
+        sum += m_swept[v];
+        ++number;
+      }
+    }
+    for(std::size_t v = 0; v < m_swept.size(); ++v)
+      if(m_swept[v] > 0 && m_swept[v] * number >= sum)
+        add(int(v));
   }
 
   static double degrees(double cosine)
@@ -436,8 +480,10 @@ private:
   std::vector<Vector_3> m_outside_normal;
   Details m_before, m_after;
   Patch_measure m_accepted;
-  double m_least_angles = 0;  // their sum, after all proposals for a patch
-  std::vector<int> m_changed; // faces to be measured
+  // sums for all proposals for a patch: the least of its angles, and the volume before the first
+  double m_least_angles = 0, m_initial_volume = 0;
+  std::vector<double> m_swept; // per vertex
+  std::vector<int> m_changed;  // faces to be measured
   std::vector<char> m_is_changed, m_is_offender;
   std::vector<int> m_offenders; // vertices
   std::vector<int> m_offences, m_rings;

@@ -107,6 +107,7 @@ private:
 
     m_state.guards_angles = m_prizes_angles;
     m_initial_angles = sum_of_angles();
+    m_initial_volume = volume_of_parts(m_state);
     m_interruption.check();
     m_round_solver.initialize(make_drift_guard());
     m_is_active = faces_around<ConcurrencyTag>(mesh, m_state.is_free, 0);
@@ -159,7 +160,13 @@ private:
       sum += s;
     return sum;
   }
-  void count_angles() { m_state.angle_surplus = sum_of_angles() - m_initial_angles; }
+  // what steps may not lower, or change much, in sum
+  void update_sums()
+  {
+    m_state.angle_surplus = sum_of_angles() - m_initial_angles;
+    if(m_state.guards_volume())
+      m_state.volume_change = volume_of_parts(m_state) - m_initial_volume;
+  }
 
   Drift_barrier make_barrier() const
   {
@@ -236,7 +243,7 @@ private:
     {
       m_visitor.on_iteration_begin(i);
       m_round_solver.begin_iteration();
-      count_angles();
+      update_sums();
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
       const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
@@ -427,7 +434,7 @@ private:
       stage.run(
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
           saved.add(faces.list);
-          count_angles();
+          update_sums();
           m_limits.sharpest = goal.sharpest;
           m_limits.sharp = goal.searched;
           return visit_regions(
@@ -521,6 +528,7 @@ private:
   double m_rest_energy = 0;
   double m_initial_energy = 0;
   double m_initial_angles = 0; // their sum
+  double m_initial_volume = 0; // six times that
 };
 
 } // namespace internal

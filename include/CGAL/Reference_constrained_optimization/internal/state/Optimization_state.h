@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -78,6 +79,11 @@ struct Optimization_state
   bool guards_angles = false;
   double angle_surplus = 0;
 
+  // By how much the volume of mechanical parts without a border may change, and has changed.
+  double largest_volume_change = std::numeric_limits<double>::infinity();
+  double volume_change = 0;
+  bool guards_volume() const { return std::isfinite(largest_volume_change); }
+
   bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
   // what is not optimized may be where it likes
@@ -103,6 +109,17 @@ Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f
     n += (vertex(mesh.corner_vertex[c]).position - o)
            .cross(vertex(mesh.corner_vertex[c + 1]).position - o);
   return n;
+}
+
+// six times the volume of the cone over a face
+template <typename VertexAccess>
+double face_volume(const Indexed_mesh& mesh,
+                   const VertexAccess& vertex,
+                   int f,
+                   const Vector_3& normal,
+                   const Vector_3& apex)
+{
+  return normal.dot(vertex(mesh.corner_vertex[mesh.face_begin[f]]).position - apex);
 }
 
 template <typename VertexAccess>
@@ -195,6 +212,18 @@ double smallest_angle_cosine(const Indexed_mesh& mesh, const VertexAccess& verte
   return mesh.degree(f) == 3
            ? smallest_angle_cosine(&mesh.corner_vertex[mesh.face_begin[f]], vertex)
            : -1;
+}
+
+// six times the volume of the mechanical parts of a mesh
+inline double volume_of_parts(const Optimization_state& state)
+{
+  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  double sum = 0;
+  for(int f = 0; f < int(state.bounds_turn.size()); ++f)
+    if(state.bounds_turn[f])
+      sum += face_volume(state.mesh, vertex, f, face_normal(state.mesh, vertex, f),
+                         state.vertices[state.mesh.corner_vertex[0]].position);
+  return sum;
 }
 
 // Figures of the whole mesh. Sums run in the order of the faces, block by block.

@@ -43,6 +43,10 @@ struct Patch
   std::vector<int> element_begin;             // per face: its first element; and their number
   // by how much the sum of the faces' smallest angles may fall, in degrees
   double angle_allowance = std::numeric_limits<double>::infinity();
+  // by how much its part of the volume (six times that) may grow and shrink
+  double largest_volume_gain = std::numeric_limits<double>::infinity();
+  double largest_volume_loss = std::numeric_limits<double>::infinity();
+  bool guards_volume() const { return std::isfinite(largest_volume_gain); }
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -164,11 +168,16 @@ public:
         patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
-    // where much was won there is nothing to fear
-    const double surplus = state.angle_surplus / double(mesh.number_of_faces()),
-                 much = 1; // degrees
-    if(state.guards_angles && surplus < much)
-      patch.angle_allowance = (std::max)(0., surplus) * double(faces.size());
+    const double share = double(faces.size()) / double(mesh.number_of_faces());
+    if(state.guards_angles)
+      patch.angle_allowance = share * (std::max)(0., state.angle_surplus);
+    if(state.guards_volume())
+    {
+      patch.largest_volume_gain =
+        share * (std::max)(0., state.largest_volume_change - state.volume_change);
+      patch.largest_volume_loss =
+        share * (std::max)(0., state.largest_volume_change + state.volume_change);
+    }
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace CGAL {
@@ -86,6 +87,16 @@ public:
 
   // whether anything has returned
   bool has_mended() const { return m_has_mended; }
+
+  // whether the mean of angles is below that at the start, where it is guarded
+  bool has_lowered_angles() const
+  {
+    const auto sum = [](const std::vector<double>& angles) {
+      return std::accumulate(angles.begin(), angles.end(), 0.);
+    };
+    return m_view.state().guards_angles &&
+           sum(find_flaws<ConcurrencyTag>(m_view).angles) < sum(m_start.angles);
+  }
 
   // Until there are no more flaws than at the start, and no angle is smaller than all were.
   void run()
