@@ -206,6 +206,38 @@ public:
              : closest(p);
   }
 
+  // How far it is from the middle of a face to what is opposite, through the material or across a gap, if
+  // that is less than `reach`. Faces that share a vertex with it are not opposite.
+  double clearance(int f, double reach) const
+  {
+    const Search& s = search();
+    const Vector_3 middle = (corner_point(f, 0) + corner_point(f, 1) + corner_point(f, 2)) / 3;
+    const Vector_3 direction = face_normal(f).normalized();
+    std::vector<Triangle_iterator> hits;
+    s.tree.all_intersected_primitives(Kernel::Segment_3(kernel_point(middle - reach * direction),
+                                                        kernel_point(middle + reach * direction)),
+                                      std::back_inserter(hits));
+    double least = reach;
+    for(const Triangle_iterator& hit : hits)
+    {
+      const int g = s.face[hit - Triangle_iterator(s.triangles.begin())];
+      const Vector_3 normal = face_normal(g);
+      if(!share_vertex(f, g) && normal.dot(direction) != 0)
+        least = (std::min)(
+          least, std::abs(normal.dot(corner_point(g, 0) - middle) / normal.dot(direction)));
+    }
+    return least;
+  }
+
+  bool share_vertex(int f, int g) const
+  {
+    for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+      for(int d = m_mesh.face_begin[g]; d < m_mesh.face_begin[g + 1]; ++d)
+        if(m_mesh.corner_vertex[c] == m_mesh.corner_vertex[d])
+          return true;
+    return false;
+  }
+
   // what is within a distance of p, by the tree: the closest point of every face there
   std::vector<Surface_point> all_within(const Vector_3& p, double distance) const
   {

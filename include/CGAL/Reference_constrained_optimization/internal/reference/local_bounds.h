@@ -5,7 +5,6 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_LOCAL_BOUNDS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_LOCAL_BOUNDS_H
 
-#include <CGAL/Reference_constrained_optimization/internal/mesh/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
 #include <algorithm>
@@ -20,40 +19,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Per triangle of R, twice the volume over the area of the connected component that it is part of: for a
-// sheet, its thickness. Infinite where a component has a border.
-inline std::vector<double> mean_thickness(const Reference_surface& reference)
-{
-  const Indexed_mesh& mesh = reference.mesh();
-  std::vector<double> thickness(mesh.number_of_faces(), std::numeric_limits<double>::infinity());
-  std::vector<char> is_left(mesh.number_of_faces(), 1);
-  for(int f = 0; f < mesh.number_of_faces(); ++f)
-  {
-    if(!is_left[f])
-      continue;
-    const std::vector<int> component = take_connected_region(mesh, f, is_left);
-    const Vector_3 origin = reference.corner_point(f, 0);
-    double area = 0, volume = 0;
-    bool is_closed = true;
-    for(const int g : component)
-    {
-      const Vector_3 normal = reference.face_normal(g);
-      area += 0.5 * normal.norm();
-      volume += normal.dot(reference.corner_point(g, 0) - origin) / 6;
-      for(int c = mesh.face_begin[g]; c < mesh.face_begin[g + 1]; ++c)
-        is_closed = is_closed && mesh.opposite[c] >= 0;
-    }
-    if(is_closed && area > 0)
-      for(const int g : component)
-        thickness[g] = 2 * std::abs(volume) / area;
-  }
-  return thickness;
-}
-
 // How far a mesh may be from R at each vertex of R: the default bound, but no more than a part of the size
-// of what is there. On mechanical parts, where small holes lie among large faces and sheets are thin, that
-// is the shortest edge and the thickness, and the default is a fifth of that for scans; on scans, where
-// single short edges mean nothing, the longest edge within two rings. Between vertices bounds grow no faster than a part of the distance.
+// of what is there. On mechanical parts, where small holes lie among large faces, sheets are thin and fits are
+// close, that is the shortest edge and the way to what is opposite, and the default is a fifth of that for
+// scans; on scans, where single short edges mean nothing, the longest edge within two rings. Between
+// vertices bounds grow no faster than a part of the distance.
 // Lengths are meant for a default bound of a quarter of the mean edge.
 inline std::vector<double> local_bounds(const Reference_surface& reference,
                                         const std::vector<char>& is_mechanical,
@@ -61,7 +31,7 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
 {
   const double scale = default_bound / (0.25 * reference.mean_edge_length());
   const double shortest_part = 0.5 * scale, longest_part = 0.35 * scale, grading = 0.5 * scale;
-  const double thin_part = 0.1 * scale;
+  const double thin_part = 0.25 * scale;
   const double mechanical_bound = 0.2 * default_bound;
   const double least = (is_mechanical.empty() ? 0.02 : 0.002) * default_bound;
   const Indexed_mesh& mesh = reference.mesh();
@@ -78,8 +48,16 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
         visit(w, (points[w] - points[v]).norm());
     }
   };
-  const std::vector<double> thickness =
-    is_mechanical.empty() ? std::vector<double>() : mean_thickness(reference);
+  // per vertex, of the faces around it
+  std::vector<double> clearance(is_mechanical.empty() ? 0 : n,
+                                std::numeric_limits<double>::infinity());
+  for(int f = 0; f < int(is_mechanical.size()); ++f)
+    if(is_mechanical[f] && !reference.is_thin(f))
+    {
+      const double distance = reference.clearance(f, mechanical_bound / thin_part);
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        clearance[mesh.corner_vertex[c]] = (std::min)(clearance[mesh.corner_vertex[c]], distance);
+    }
   std::vector<double> longest(n, 0);
   for(int v = 0; v < n; ++v)
     for_each_neighbour(v, [&](int, double length) { longest[v] = (std::max)(longest[v], length); });
@@ -101,8 +79,7 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
       for_each_neighbour(v, [&](int, double length) {
         shortest = length > 0 ? (std::min)(shortest, length) : shortest;
       });
-      bound = (std::min)(
-        {mechanical_bound, shortest_part * shortest, thin_part * thickness[mesh.face_at(v)]});
+      bound = (std::min)({mechanical_bound, shortest_part * shortest, thin_part * clearance[v]});
     }
     bounds[v] = (std::max)(least, bound);
     if(bounds[v] < default_bound)
