@@ -32,10 +32,8 @@ struct Feature_report
   std::size_t number_of_feature_edges = 0; ///< edges that were marked.
   /// the share of the area in faces with a neighbour that goes on in the same plane (turned by less than
   /// a degree): what planes, cylinders and cones are tessellated with, however coarsely; above 0.8 it is
-  /// a part if `amount_of_sharp_edges` is above 0.25 or `bent_share` above 0.1.
+  /// a part.
   double flat_share = 0;
-  /// how many of all edges turn by more than 5 degrees.
-  double bent_share = 0;
   /// length of the sharp edges (that turn by 40 degrees or more) over the square root of the area; up to
   /// 0.25 there is too little to tell.
   double amount_of_sharp_edges = 0;
@@ -93,7 +91,6 @@ Feature_report detect_features(const FaceGraph& mesh,
     internal::features_of_polygons(copy.mesh, surface, features.is_feature);
   Feature_report report;
   report.flat_share = features.evidence.flat_share();
-  report.bent_share = features.evidence.bent_share();
   report.amount_of_sharp_edges = features.evidence.amount();
   report.crisp_share = features.evidence.crisp_share();
   report.sharp_share = features.evidence.sharp_share();

@@ -27,8 +27,7 @@ struct Feature_evidence
   double crisp_length = 0; // of those beside which the surface turns by less than a third of that
   std::size_t sharp_edges = 0, turned_edges = 0; // that turn by more than 40, 20 degrees
   std::size_t edges = 0;
-  std::size_t bent_edges = 0; // that turn by more than 5 degrees
-  double flat_area = 0;       // of faces with a neighbour that goes on in the same plane
+  double flat_area = 0; // of faces with a neighbour that goes on in the same plane
 
   // without unit; lines that are short against the size of a component say nothing about it
   double amount() const { return area > 0 ? sharp_length / std::sqrt(area) : 0; }
@@ -38,14 +37,11 @@ struct Feature_evidence
     return turned_edges > 0 ? double(sharp_edges) / double(turned_edges) : 0;
   }
   double flat_share() const { return area > 0 ? flat_area / area : 0; }
-  double bent_share() const { return edges > 0 ? double(bent_edges) / double(edges) : 0; }
   double turned_share() const { return edges > 0 ? double(turned_edges) / double(edges) : 0; }
   // it is made of planes and strips; or sharp edges are lines, or hardly any edge is turned that is not
   // sharp, or few are and most edges are not turned at all
   bool is_mechanical() const
   {
-    if(flat_share() > 0.8 && bent_share() > 0.1)
-      return true;
     return amount() > 0.25 && (flat_share() > 0.8 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
                                (sharp_share() > 0.4 && turned_share() < 0.25));
   }
@@ -92,7 +88,7 @@ public:
 
 private:
   // degrees; a regular polygon of nine vertices turns by 40, but for rounding
-  static constexpr double sharp_turn = 39.9, small_turn = 20, bend = 5, no_turn = 1;
+  static constexpr double sharp_turn = 39.9, small_turn = 20, no_turn = 1;
 
   void measure_turns()
   {
@@ -136,7 +132,6 @@ private:
         if(m_mesh.opposite[c] < c)
           continue;
         ++e.edges;
-        e.bent_edges += m_turn[c] > bend;
         if(!(m_turn[c] > small_turn) || is_fold(c))
           continue;
         ++e.turned_edges;

@@ -310,9 +310,8 @@ private:
     }
     for(int f = 0; f < mesh.number_of_faces(); ++f)
     {
-      // what is as sharp as the limit must not be found sharper when it is rounded
-      const double cosine = m_after.cosines[f], old = m_before.cosines[f], rounding = 1e-12;
-      if(cosine > m_limits.sharpest - rounding && cosine > old - rounding && cosine != old)
+      const double cosine = m_after.cosines[f];
+      if(cosine > m_limits.sharpest && cosine > m_before.cosines[f])
       {
         exceeds = true;
         add_face(mesh, f);
