@@ -330,7 +330,9 @@ void test_large_fans()
     RCO_CHECK_NEAR(RCO::feature_deviation(mesh, moved).kept, 1, 1e-9);
     return double(std::clock() - start) / CLOCKS_PER_SEC;
   };
-  const double small = time(1000), large = time(5000);
+  // the least of three: other processes may be in the way
+  const double small = (std::min)({time(1000), time(1000), time(1000)}),
+               large = (std::min)({time(5000), time(5000), time(5000)});
   RCO_CHECK_LESS(large, 18 * small);
 }
 
