@@ -32,14 +32,15 @@ elseif(MSVC)
   endif()
 endif()
 
-# rco_add_executable(<name>) builds <name>.cpp of the current folder. A source that is not there
-# yet is no error: the caller sees it by the target's absence.
-function(rco_add_executable name)
-  if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp")
-    message(STATUS "${name}: no source file yet, skipped")
+# rco_add_executable([<folder>/]<name>) builds <name>.cpp, of the current folder or one below it. A
+# source that is not there yet is no error: the caller sees it by the target's absence.
+function(rco_add_executable path)
+  if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${path}.cpp")
+    message(STATUS "${path}: no source file yet, skipped")
     return()
   endif()
-  add_executable(${name} ${name}.cpp)
+  get_filename_component(name ${path} NAME)
+  add_executable(${name} ${path}.cpp)
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
   target_link_libraries(${name} PRIVATE rco_settings)
   # the folder of CGAL's *.off files, and for CGAL::data_file_path() the folder above it

@@ -13,8 +13,8 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   cat >&2 <<'END'
 install_dependencies.sh: this is not a Debian or Ubuntu system (no apt-get).
 Please install a C++17 compiler, CMake (3.21 or later), make or ninja, CGAL (5.5 or later) with its
-data, Eigen (3.3.7 or later), Boost, GMP and MPFR; TBB, Boost.Program_options and Google Benchmark
-are optional.
+data, Eigen (3.3.7 or later), Boost, GMP and MPFR; TBB, Boost.Program_options, Google Benchmark and
+Python (3.9 or later) are optional.
 Then run the script again with RCO_SKIP_INSTALL=1.
 END
   exit 1
@@ -33,6 +33,7 @@ missing_packages() {
   command -v g++ >/dev/null || echo g++
   command -v cmake >/dev/null || echo cmake
   command -v make >/dev/null || command -v ninja >/dev/null || echo make
+  command -v python3 >/dev/null || echo python3
   for package in libcgal-dev libcgal-demo libeigen3-dev libboost-dev libboost-program-options-dev \
                  libtbb-dev libbenchmark-dev libgmp-dev libmpfr-dev; do
     is_installed "$package" || echo "$package"

@@ -25,20 +25,21 @@ done
 # a Python of one's own may not see Debian's packages
 python=
 for candidate in python3 /usr/bin/python3; do
-  if "$candidate" -c 'import vtkmodules' 2>/dev/null; then
+  if "$candidate" -c 'import vtkmodules, matplotlib' 2>/dev/null; then
     python=$candidate
     break
   fi
 done
 if [ -z "$python" ]; then
-  echo "make_figures.sh: VTK for Python is missing (Debian: apt-get install python3-vtk9)" >&2
+  echo "make_figures.sh: VTK or matplotlib for Python is missing" \
+    "(Debian: apt-get install python3-vtk9 python3-matplotlib)" >&2
   exit 1
 fi
 
 build=build/release
 cmake --preset release >/dev/null
 cmake --build "$build" --parallel "${RCO_JOBS:-1}" --target rco_benchmark quad_benchmark \
-  compatible_benchmark side_by_side method_pictures trade_charts quad_mesh_optimization
+  compatible_benchmark side_by_side method_pictures make_quad_mesh quad_mesh_optimization
 if [ "$keeps_runs" = 0 ]; then
   rm -rf "$build/figures"
 fi

@@ -6,6 +6,7 @@
 #include "Monotonicity_visitor.h"
 #include "meshes.h"
 #include "method.h"
+#include "settings.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
@@ -17,10 +18,8 @@
 
 // Appends the common settings to a list of the package's own parameters, which must come first. To
 // what it returns CGAL's can be appended.
-template <typename Own_parameters, typename Settings>
-auto with_common_settings(const Own_parameters& own,
-                          const Settings& s,
-                          Monotonicity_visitor& visitor)
+template <typename Own_parameters, typename Visitor>
+auto with_common_settings(const Own_parameters& own, const Common_settings& s, Visitor& visitor)
 {
   return own.energy_tolerance(s.tolerance)
     .maximum_patch_size(s.patch_size)

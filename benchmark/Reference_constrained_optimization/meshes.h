@@ -7,8 +7,7 @@
 #include <CGAL/Polygon_mesh_processing/IO/polygon_mesh_io.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <cstddef>
-#include <exception>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -20,28 +19,15 @@ inline Mesh read(const std::string& file)
 {
   Mesh mesh;
   if(!CGAL::IO::read_polygon_mesh(file, mesh))
-    throw std::runtime_error("cannot be read as a polygon mesh");
+    throw std::runtime_error(file + " cannot be read as a polygon mesh");
   return mesh;
 }
 
-// the same for one of several files of a run: the message names it
-inline Mesh read_or_name(const std::string& file)
+// writes <folder>/<name>.off with all digits; does nothing without a folder
+inline void write(const Mesh& mesh, const std::string& folder, const std::string& name)
 {
-  try
-  {
-    return read(file);
-  }
-  catch(const std::exception& e)
-  {
-    throw std::runtime_error(file + " " + e.what());
-  }
-}
-
-// writes <folder>/<name>.off with all digits; blanks in the name become underscores
-inline void write(const Mesh& mesh, const std::string& folder, std::string name)
-{
-  for(char& c : name)
-    c = c == ' ' ? '_' : c;
+  if(folder.empty())
+    return;
   const std::string path = folder + "/" + name + ".off";
   std::ofstream out(path);
   out.precision(17);
@@ -49,12 +35,11 @@ inline void write(const Mesh& mesh, const std::string& folder, std::string name)
     throw std::runtime_error("cannot write " + path);
 }
 
-// a file's name without folder and extension
+// a file's or folder's name without what is around it
 inline std::string base_name(const std::string& file)
 {
-  const std::size_t slash = file.find_last_of("/\\"), start = slash + 1; // npos + 1 is 0
-  const std::size_t dot = file.find_last_of('.');
-  return file.substr(start, dot != std::string::npos && dot > start ? dot - start : dot);
+  const std::filesystem::path path(file);
+  return (path.has_filename() ? path : path.parent_path()).stem().string();
 }
 
 #endif // RCO_BENCHMARK_MESHES_H

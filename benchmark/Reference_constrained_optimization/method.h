@@ -5,13 +5,9 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
 
-#include <array>
 #include <limits>
+#include <stdexcept>
 #include <string>
-
-// ours: the library's defaults; plain: without on-surface steps and finishing; paper: as the paper
-// describes it
-const std::array<const char*, 3> method_names = {{"ours", "plain", "paper"}};
 
 // whether --check has anything to check; what promises nothing need not be one of the above
 inline bool keeps_promises(const std::string& method)
@@ -19,10 +15,11 @@ inline bool keeps_promises(const std::string& method)
   return method == "ours" || method == "plain";
 }
 
-// Turns off what the method does not have. From the paper it differs in these: a face also counts
-// as touched if it was the seed or inside two patches, without which an iteration need not end;
-// borders of the mesh are no boundaries of patches; densities are finite everywhere; and the run
-// ends when an iteration changes the energy by less than the tolerance.
+// ours: the library's defaults; plain: without on-surface steps and finishing; paper: as the paper
+// describes it. From the paper it differs in these: a face also counts as touched if it was the seed or
+// inside two patches, without which an iteration need not end; borders of the mesh are no boundaries of
+// patches; densities are finite everywhere; and the run ends when an iteration changes the energy by
+// less than the tolerance.
 inline void set_method(const std::string& method,
                        CGAL::Reference_constrained_optimization::internal::Loop_parameters& p)
 {
@@ -32,6 +29,8 @@ inline void set_method(const std::string& method,
   p.use_finishing_stage = false;
   if(method == "plain")
     return;
+  if(method != "paper")
+    throw std::invalid_argument("there is no method " + method);
   // patches: one after the other, each as large as the proxy lets it grow
   p.halo = (std::numeric_limits<int>::max)();
   p.use_active_set = false;

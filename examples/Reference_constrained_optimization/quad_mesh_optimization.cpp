@@ -3,7 +3,6 @@
 
 #include "command_line.h"
 #include "quad_mesh_generation.h"
-#include "svg_histogram.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
@@ -15,7 +14,6 @@
 #include <iostream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 const char* const usage =
   R"(Usage: quad_mesh_optimization [mesh [result.obj]] [options]
@@ -24,39 +22,7 @@ const char* const usage =
   --energy NAME        "regularity" (default) or "angle"
   --leg-length L       of the regularity energy's rest triangles, in mean edges (default 5)
   --relax-borders      lets vertices at the border slide along it
-  --histograms PREFIX  writes PREFIX_angles.svg and PREFIX_edges.svg
 )";
-
-std::vector<double> corner_angles(const Mesh& mesh)
-{
-  std::vector<double> angles;
-  for(const Mesh::Halfedge_index h : mesh.halfedges())
-    if(!mesh.is_border(h))
-      angles.push_back(CGAL::approximate_angle(mesh.point(mesh.source(h)),
-                                               mesh.point(mesh.target(h)),
-                                               mesh.point(mesh.target(mesh.next(h)))));
-  return angles;
-}
-
-std::vector<double> relative_edge_lengths(const Mesh& mesh)
-{
-  const double mean = RCO::edge_statistics(mesh).mean;
-  std::vector<double> lengths;
-  for(const Mesh::Edge_index e : mesh.edges())
-    lengths.push_back(get(boost::edge_weight, mesh, e) / mean);
-  return lengths;
-}
-
-void write_histograms(const std::string& prefix, const Mesh& before, const Mesh& after)
-{
-  const Svg_histogram::Axis angle = {
-    "Corner angles", "angle (degrees)", "share of corners", "&#176;", 180, 2, 30, 90, false, 1};
-  const Svg_histogram::Axis edge = {
-    "Edge lengths", "length over mean length", "share of edges", "", 2.5, 0.05, 0.5, 1, true, 2};
-  Svg_histogram(angle, corner_angles(before), corner_angles(after)).write(prefix + "_angles.svg");
-  Svg_histogram(edge, relative_edge_lengths(before), relative_edge_lengths(after))
-    .write(prefix + "_edges.svg");
-}
 
 template <typename T>
 void print(const char* what, T before, T after)
@@ -125,8 +91,7 @@ int main(int argc, char* argv[])
                                  {{"--reference", true},
                                   {"--energy", true},
                                   {"--leg-length", true},
-                                  {"--relax-borders", false},
-                                  {"--histograms", true}});
+                                  {"--relax-borders", false}});
     Mesh mesh = read_mesh(arguments.name(0, CGAL::data_file_path("meshes/elephant.off")));
     const Mesh reference =
       arguments.has("--reference") ? read_mesh(arguments.text("--reference", "")) : mesh;
@@ -147,8 +112,6 @@ int main(int argc, char* argv[])
     const std::string output = arguments.name(1, "");
     if(!output.empty())
       write_mesh(output, mesh);
-    if(arguments.has("--histograms"))
-      write_histograms(arguments.text("--histograms", ""), initial, mesh);
   }
   catch(const std::exception& e)
   {

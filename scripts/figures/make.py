@@ -8,11 +8,12 @@ is removed.
 """
 
 import json
+import math
 import os
-import shutil
 import subprocess
 import sys
 
+import charts
 from quads import catmull_clark, quads_of_grid, shaken, write
 from render import (
     PLAIN,
@@ -21,6 +22,7 @@ from render import (
     Picture,
     View,
     colours,
+    corner_angles,
     distinct_colour,
     distortions,
     read,
@@ -31,6 +33,7 @@ from render import (
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DOC = os.path.join(HERE, "../../doc/Reference_constrained_optimization")
+BENCHMARK = os.path.join(HERE, "../../benchmark/Reference_constrained_optimization")
 FIGURES = os.path.join(DOC, "fig")
 MANUAL = os.path.join(DOC, "Reference_constrained_optimization.txt")
 
@@ -48,7 +51,7 @@ def data(name):
 
 
 def program(name):
-    folder = "examples" if name == "quad_mesh_optimization" else "benchmark"
+    folder = "examples" if name in ("make_quad_mesh", "quad_mesh_optimization") else "benchmark"
     return os.path.join(BUILD, folder, "Reference_constrained_optimization", name)
 
 
@@ -64,14 +67,20 @@ def folder(*names):
 
 
 def rows(name, *command):
-    """the rows of a driver, from the last time if there are some"""
+    """the rows that a script of the benchmark prints, from the last time if there are some"""
     file = os.path.join(folder(), name + ".json")
     if not os.path.exists(file):
-        text = run(*command, "--format", "json", "--check")
+        text = run(sys.executable, *command)
         with open(file, "w") as out:
             out.write(text)
-    with open(file) as text:
-        return json.load(text)
+    with open(file) as lines:
+        return [json.loads(line) for line in lines]
+
+
+def runs(name, driver, inputs, *settings):
+    """the rows of a driver, which writes its meshes into a folder of this name"""
+    return rows(name, os.path.join(BENCHMARK, "run.py"), "--format", "json", "--output", folder(name),
+                program(driver), *inputs, "--", *settings)
 
 
 # ---- what is shown --------------------------------------------------------------------------
@@ -111,8 +120,7 @@ CHART_MESHES = ("elephant", "fandisk", "bear", "armadillo")
 
 
 def optimize_angles():
-    names = list(ANGLE_MESHES)
-    return rows("angle", program("rco_benchmark"), *map(data, names), "-o", folder("angle"))
+    return runs("angle", "rco_benchmark", map(data, ANGLE_MESHES), "--check")
 
 
 def make_quads(name):
@@ -135,11 +143,8 @@ def optimize_quads():
             for mesh, file in zip(make_quads(name), files):
                 write(mesh, file)
         pairs.append(":".join(files))
-    lengths = rows("quad", program("quad_benchmark"), *pairs, "--leg-length", "1",
-                   "-o", folder("quad"))
-    angles = rows("quad_angle", program("quad_benchmark"), *pairs, "--energy", "angle",
-                  "-o", folder("quad_angle"))
-    return lengths, angles
+    return (runs("quad", "quad_benchmark", pairs, "--check", "--leg-length", "1"),
+            runs("quad_angle", "quad_benchmark", pairs, "--check", "--energy", "angle"))
 
 
 def optimize_maps():
@@ -154,8 +159,7 @@ def optimize_maps():
         if not os.path.exists(link):
             os.symlink(os.path.join(HERE, "landmarks", pair + ".txt"), link)
         folders.append(path)
-    return rows("map", program("compatible_benchmark"), *folders, "--start", "landmarks",
-                "-o", folder("map"))
+    return runs("map", "compatible_benchmark", folders, "--check", "--start", "landmarks")
 
 
 # ---- pictures -------------------------------------------------------------------------------
@@ -222,8 +226,7 @@ def angle_picture():
 def detail_picture():
     """what is finer than the bound on the drift"""
     optimize_angles()
-    rows("angle_close", program("rco_benchmark"), data("camel"), "--drift-bound", "0.05", "-o",
-         folder("angle_close"))
+    runs("angle_close", "rco_benchmark", [data("camel")], "--check", "--drift-bound", "0.05")
     meshes = (read(data("camel")), read(os.path.join(WORK, "angle/camel.off")),
               read(os.path.join(WORK, "angle_close/camel.off")))
     view = View(meshes[0], *ANGLE_MESHES["camel"])
@@ -478,26 +481,53 @@ def partition_picture():
 # ---- charts ---------------------------------------------------------------------------------
 
 
-def charts():
-    run(program("trade_charts"), FIGURES, *map(data, CHART_MESHES))
-    for name in CHART_MESHES:
-        if name not in ("armadillo", "fandisk"):
-            os.remove(os.path.join(FIGURES, f"angles_{name}.svg"))
+def figure(name):
+    return os.path.join(FIGURES, name + ".svg")
+
+
+def trade_charts():
+    meshes = list(map(data, CHART_MESHES))
+    charts.energy(runs("energy", "rco_benchmark", meshes, "--history", "--method", "ours,plain",
+                       "--finishing", "0", "--drift-bound", "inf"), figure("energy"))
+    charts.bound(runs("trade_drift_bound", "rco_benchmark", meshes, "--drift-bound",
+                      "0.1,0.15,0.25,0.5,1,inf"), figure("trade_drift_bound"))
+    charts.exponent(runs("trade_exponent", "rco_benchmark", meshes, "--exponent", "1,2,5",
+                         "--finishing", "1,0"), figure("trade_exponent"))
 
 
 def peer_charts():
-    path = folder("peers")
-    file = os.path.join(path, "angles.svg")
-    if not os.path.exists(file):
-        run(program("side_by_side"), *map(data, CHART_MESHES), "-o", path)
-    for name in ("angles", "drift"):
-        shutil.copy(os.path.join(path, name + ".svg"), os.path.join(FIGURES, f"peers_{name}.svg"))
+    charts.peers(rows("peers", os.path.join(BENCHMARK, "quality/side_by_side.py"), "--format", "json",
+                      program("side_by_side"), *map(data, CHART_MESHES)),
+                 figure("peers_angles"), figure("peers_drift"))
+
+
+def all_angles(mesh):
+    return [angle for f in mesh.faces for angle in corner_angles(mesh, f)]
+
+
+def angle_histograms():
+    optimize_angles()
+    for name in ("armadillo", "fandisk"):
+        after = read(os.path.join(WORK, "angle", name + ".off"))
+        charts.histogram("Angles of " + name, "angle (degrees)", all_angles(read(data(name))),
+                         all_angles(after), range(0, 181, 2), 60, "°", figure("angles_" + name))
+
+
+def relative_lengths(mesh):
+    edges = {frozenset((f[i - 1], f[i])) for f in mesh.faces for i in range(len(f))}
+    lengths = [math.dist(*(mesh.points[v] for v in e)) for e in edges]
+    return [length * len(lengths) / sum(lengths) for length in lengths]
 
 
 def quad_histograms():
-    prefix = os.path.join(FIGURES, "quad")
-    run(program("quad_mesh_optimization"), data("nefertiti"), "--energy", "angle", "--histograms",
-        prefix)
+    files = [os.path.join(folder("quad_histograms"), name) for name in ("before.obj", "after.obj")]
+    run(program("make_quad_mesh"), data("nefertiti"), files[0])
+    run(program("quad_mesh_optimization"), data("nefertiti"), files[1], "--energy", "angle")
+    before, after = map(read, files)
+    charts.histogram("Corner angles", "angle (degrees)", all_angles(before), all_angles(after),
+                     range(0, 181, 2), 90, "°", figure("quad_angles"))
+    charts.histogram("Edge lengths", "length over mean length", relative_lengths(before),
+                     relative_lengths(after), [i / 20 for i in range(52)], 1, "", figure("quad_edges"))
 
 
 # ---- tables ---------------------------------------------------------------------------------
@@ -580,8 +610,9 @@ TASKS = {
     "gallery_angle": angle_gallery,
     "gallery_quad": quad_gallery,
     "gallery_map": map_gallery,
+    "angle_histograms": angle_histograms,
     "quad_histograms": quad_histograms,
-    "charts": charts,
+    "trade_charts": trade_charts,
     "peer_charts": peer_charts,
     "tables": tables,
 }

@@ -4,12 +4,12 @@
 // The optimizers that are compared, each moving a mesh along its own initial shape with its border
 // fixed.
 
+#include "../driver.h"
 #include "Mesh_on_reference.h"
 #include "Peer_result.h"
 #include "Soft_constraint_optimizer.h"
 #include "Star_smoother.h"
 #include "cgal_peers.h"
-#include "report.h"
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
@@ -17,15 +17,11 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <string>
-#include <vector>
 
-struct Peer
-{
-  std::string key, name;
-  bool keeps_connectivity;
-  std::function<Peer_result(const Mesh& input, double time_limit)> run;
-};
+// what it makes of a mesh, in so many seconds
+typedef std::function<Peer_result(const Mesh& input, double time_limit)> Peer;
 
 namespace peers {
 
@@ -71,41 +67,33 @@ inline Peer_result constrain_softly(const Mesh& input)
 
 } // namespace peers
 
-// The first is the mesh as it is and the second what all others are compared with.
-inline std::vector<Peer> all_peers()
+inline std::map<std::string, Peer> all_peers()
 {
-  const double infinity = std::numeric_limits<double>::infinity();
   return {
-    {"input", "input", true,
+    {"input",
      [](const Mesh& m, double) {
        return Peer_result{m, 0, ""};
      }},
-    {"package", "package", true,
+    {"package",
      [](const Mesh& m, double limit) {
        return peers::optimize(m, CGAL::parameters::maximum_running_time(limit));
      }},
-    {"plain", "paper's pipeline", true,
-     [infinity](const Mesh& m, double limit) {
+    {"plain",
+     [](const Mesh& m, double limit) {
+       const double infinity = std::numeric_limits<double>::infinity();
        return peers::optimize(m, CGAL::parameters::use_on_surface_steps(false)
                                    .use_finishing_stage(false)
                                    .drift_bound(infinity)
                                    .maximum_running_time(limit));
      }},
-    {"stars1", "star smoother, s = 1", true,
-     [](const Mesh& m, double) { return peers::smooth_stars(m, 1); }},
-    {"stars10", "star smoother, s = 10", true,
-     [](const Mesh& m, double) { return peers::smooth_stars(m, 10); }},
-    {"soft", "soft constraint", true,
-     [](const Mesh& m, double) { return peers::constrain_softly(m); }},
-    {"angles", "CGAL angle smoothing", true,
-     [](const Mesh& m, double limit) { return smooth_angles(m, false, limit); }},
-    {"angles_safe", "CGAL angle smoothing, safe", true,
-     [](const Mesh& m, double limit) { return smooth_angles(m, true, limit); }},
-    {"relax", "CGAL relaxation", true,
-     [](const Mesh& m, double limit) { return relax(m, false, limit); }},
-    {"relax_guarded", "CGAL relaxation, guarded", true,
-     [](const Mesh& m, double limit) { return relax(m, true, limit); }},
-    {"remesh", "CGAL isotropic remeshing", false, [](const Mesh& m, double) { return remesh(m); }}};
+    {"stars1", [](const Mesh& m, double) { return peers::smooth_stars(m, 1); }},
+    {"stars10", [](const Mesh& m, double) { return peers::smooth_stars(m, 10); }},
+    {"soft", [](const Mesh& m, double) { return peers::constrain_softly(m); }},
+    {"angles", [](const Mesh& m, double limit) { return smooth_angles(m, false, limit); }},
+    {"angles_safe", [](const Mesh& m, double limit) { return smooth_angles(m, true, limit); }},
+    {"relax", [](const Mesh& m, double limit) { return relax(m, false, limit); }},
+    {"relax_guarded", [](const Mesh& m, double limit) { return relax(m, true, limit); }},
+    {"remesh", [](const Mesh& m, double) { return remesh(m); }}};
 }
 
 #endif // RCO_BENCHMARK_PEERS_H

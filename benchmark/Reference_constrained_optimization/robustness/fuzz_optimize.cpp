@@ -2,12 +2,12 @@
 // promises is verified. With RCO_FUZZ_VERBOSE in the environment an input and what became of it are
 // printed, too: for the replay of a finding.
 
+#include "../Monotonicity_visitor.h"
+#include "../meshes.h"
+#include "../promises.h"
 #include "Locations.h"
-#include "Monotonicity_visitor.h"
 #include "checked_run.h"
 #include "fuzz_input.h"
-#include "meshes.h"
-#include "promises.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>

@@ -1,7 +1,7 @@
 // Writes the stages of the method on one mesh, for scripts/make_figures.sh to draw: a patch, its
 // flattening, what is made of it there and on the surface, and a partition.
 
-#include "meshes.h"
+#include "../meshes.h"
 
 #include <CGAL/Random.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>

@@ -3,8 +3,8 @@
 
 // Finer quad meshes of a surface.
 
-#include "meshes.h"
-#include "shape.h"
+#include "../meshes.h"
+#include "../shape.h"
 
 #include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/subdivision_method_3.h>

@@ -4,9 +4,9 @@
 // What CGAL's Polygon_mesh_processing has that improves triangles. Functions with a number of
 // iterations are tried with several, and the one that ends with the largest minimum angle is kept.
 
+#include "../meshes.h"
 #include "Mesh_on_reference.h"
 #include "Peer_result.h"
-#include "meshes.h"
 
 #include <CGAL/Polygon_mesh_processing/angle_and_area_smoothing.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>

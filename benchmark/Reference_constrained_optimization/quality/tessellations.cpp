@@ -6,10 +6,10 @@
 //
 // writes <name>_isotropic.off, <name>_scan.off and <name>_sliver.off into the folder; then
 //
-//   rco_benchmark --reference mesh folder/<name>_*.off
+//   run.py rco_benchmark folder/<name>_*.off -- --reference mesh
 
-#include "meshes.h"
-#include "shape.h"
+#include "../meshes.h"
+#include "../shape.h"
 
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Random.h>

@@ -3,9 +3,9 @@
 
 // Small inputs, each with one thing wrong, and what has to become of them.
 
+#include "../promises.h"
 #include "Soup.h"
 #include "outcome.h"
-#include "promises.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,11 +3,11 @@
 
 // One call of the package, with everything checked that it promises.
 
+#include "../Monotonicity_visitor.h"
+#include "../meshes.h"
+#include "../promises.h"
 #include "Locations.h"
-#include "Monotonicity_visitor.h"
-#include "meshes.h"
 #include "outcome.h"
-#include "promises.h"
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
@@ -27,7 +27,7 @@
 
 struct Run_figures
 {
-  std::size_t number_of_faces = 0, number_of_free_vertices = 0;
+  std::size_t number_of_faces = 0;
   double angle_minimum_in = 0, angle_mean_in = 0; // smallest angles of the faces
   double angle_minimum_out = 0, angle_mean_out = 0;
   double seconds = 0;
@@ -262,7 +262,6 @@ inline Outcome checked_run(const Mesh& input,
       return Outcome::broken_promise;
     }
     figures.seconds = r.running_time;
-    figures.number_of_free_vertices = r.number_of_free_vertices;
     Monotonicity_visitor unused;
     call(placed, reference, placed_map, placed_locations.map(), settings, 0, unused);
 

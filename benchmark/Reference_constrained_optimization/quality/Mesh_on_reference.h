@@ -4,7 +4,7 @@
 // A triangle mesh whose vertices lie on its own initial shape and slide along it: what those peers
 // need that do not bring a projection of their own.
 
-#include "meshes.h"
+#include "../meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>

@@ -3,7 +3,7 @@
 
 // What an optimizer hands back, and the clock that all are timed with.
 
-#include "meshes.h"
+#include "../meshes.h"
 
 #include <ctime>
 #include <string>

@@ -4,7 +4,7 @@
 // Where the package says that the vertices lie on a triangle mesh, and what follows. A closest point
 // may be on another sheet where a surface passes through itself.
 
-#include "meshes.h"
+#include "../meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
 

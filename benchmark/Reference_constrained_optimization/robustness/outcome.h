@@ -5,46 +5,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-// The values are exit codes of processes; small ones belong to whatever else ends a process.
 enum class Outcome {
-  improved = 20,
+  improved,
   nothing_to_do,
   refused,
   no_mesh, // the data do not make a half-edge mesh: the package is not reached
   broken_promise,
   exception, // of another type than Invalid_input
-  out_of_memory,
-  time_out,
-  crash
+  out_of_memory
 };
 
-struct Named_outcome
+inline std::string name(Outcome outcome)
 {
-  Outcome outcome;
-  const char* name;
-};
-
-const std::array<Named_outcome, 9> all_outcomes = {{{Outcome::improved, "improved"},
-                                                    {Outcome::nothing_to_do, "nothing to do"},
-                                                    {Outcome::refused, "refused"},
-                                                    {Outcome::no_mesh, "no mesh"},
-                                                    {Outcome::broken_promise, "broken promise"},
-                                                    {Outcome::exception, "exception"},
-                                                    {Outcome::out_of_memory, "memory"},
-                                                    {Outcome::time_out, "time-out"},
-                                                    {Outcome::crash, "crash"}}};
-
-inline bool is_outcome(int exit_code)
-{
-  return exit_code >= int(Outcome::improved) && exit_code <= int(Outcome::crash);
-}
-
-inline const char* name(Outcome outcome)
-{
-  return all_outcomes[int(outcome) - int(Outcome::improved)].name;
+  const std::array<const char*, 7> names = {
+    {"improved", "nothing to do", "refused", "no mesh", "broken promise", "exception", "memory"}};
+  return names[std::size_t(outcome)];
 }
 
 // outcomes that are right for an input; a refusal has to start with the given words
@@ -62,7 +41,7 @@ struct Expectation
   {
     std::string all;
     for(const Outcome o : outcomes)
-      all += (all.empty() ? "" : " or ") + std::string(name(o)) +
+      all += (all.empty() ? "" : " or ") + name(o) +
              (o == Outcome::refused && !refusal.empty() ? " (" + refusal + "...)" : "");
     return all;
   }

@@ -3,7 +3,7 @@
 
 // Points and faces that need not make a mesh, and simple shapes.
 
-#include "meshes.h"
+#include "../meshes.h"
 
 #include <cmath>
 #include <cstddef>
