@@ -21,11 +21,12 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A mover proposes new positions of a patch's free vertices. It provides
-//   bool propose(const Patch&, const Density&);
+//   bool propose(const Patch&, const Patch_samples&, const Density&);
 // which says whether there is anything to try;
 //   bool place(const Patch&, int v, double t, Placed_vertex&);
 // which puts local vertex v at part t in (0, 1] of its way, and says whether it could;
-//   bool propose_again(const Patch&, const std::vector<double>& steps, const Density&);
+//   bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>& steps,
+//                     const Density&);
 // which, after a proposal was accepted with the given part of its way for every vertex, and the
 // patch updated accordingly, proposes further ones.
 //
@@ -54,7 +55,7 @@ public:
   {}
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density& density)
+  bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     const Indexed_mesh& triangles = patch.triangles();
@@ -72,11 +73,11 @@ public:
 
     check(m_interruption);
     const auto start_of_descent = std::chrono::steady_clock::now();
-    m_problem.carriers = drift_carriers(patch);
+    m_problem.carriers = drift_carriers(patch, samples);
     m_start_triangle.assign(m_flattening.positions.size(), -1);
     for(int c = 0; c < triangles.number_of_corners(); ++c)
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
-    set_up_problem(patch);
+    set_up_problem(patch, samples);
     m_optimizer.analyze(m_problem);
     const bool proposes = optimize(density);
     m_optimization_time = seconds_since(start_of_descent);
@@ -84,7 +85,10 @@ public:
   }
 
   template <typename Density>
-  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  bool propose_again(const Patch& patch,
+                     const Patch_samples& samples,
+                     const std::vector<double>& steps,
+                     const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     std::vector<Vector_2>& u = m_flattening.positions;
@@ -93,7 +97,7 @@ public:
     bool proposes = false;
     if(is_locally_injective(patch.triangles(), u))
     {
-      set_up_problem(patch);
+      set_up_problem(patch, samples);
       proposes = optimize(density);
     }
     m_optimization_time += seconds_since(start);
@@ -129,7 +133,7 @@ private:
              .steps > 0;
   }
 
-  void set_up_problem(const Patch& patch)
+  void set_up_problem(const Patch& patch, const Patch_samples& samples)
   {
     const std::vector<Vector_2>& u = m_flattening.positions;
     m_problem.triples.clear();
@@ -152,15 +156,15 @@ private:
         Planar_problem::edges(u, e.vertices),
         signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
     }
-    find_motions(patch);
-    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_motions[v]; });
+    find_motions(patch, samples);
+    m_problem.drift.collect(patch, samples, [&](int v) -> const Tangent_frame& { return m_motions[v]; });
   }
 
   // How vertices move along R when they move in the plane: the mean of the triangles around them, in
   // the tangent plane of R.
-  void find_motions(const Patch& patch)
+  void find_motions(const Patch& patch, const Patch_samples& samples)
   {
-    if(patch.samples.empty())
+    if(!samples.are_bounded())
       return;
     const Indexed_mesh& triangles = patch.triangles();
     const std::vector<Vector_2>& u = m_flattening.positions;

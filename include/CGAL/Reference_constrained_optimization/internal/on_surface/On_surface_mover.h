@@ -84,7 +84,7 @@ public:
   void set_strain_resistance(double part) { m_first_resistance = part; }
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density& density)
+  bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     m_optimization_time = 0;
     const auto start = std::chrono::steady_clock::now();
@@ -96,27 +96,30 @@ public:
       m_problem.triples.push_back(e.vertices);
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
-    m_problem.carriers = drift_carriers(patch);
+    m_problem.carriers = drift_carriers(patch, samples);
     check(m_interruption);
     m_newton.analyze(m_problem);
     check(m_interruption);
     m_strain_resistance = m_first_resistance;
-    m_is_held.assign(patch.vertices.size(), !patch.samples.empty());
-    const bool proposes = step(patch, density);
+    m_is_held.assign(patch.vertices.size(), samples.are_bounded());
+    const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
   }
 
   // from where the vertices are now
   template <typename Density>
-  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  bool propose_again(const Patch& patch,
+                     const Patch_samples& samples,
+                     const std::vector<double>& steps,
+                     const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     adapt(patch, steps);
     // what went off its crease without much harm may go on
     for(std::size_t v = 0; v < steps.size(); ++v)
-      m_is_held[v] = !patch.samples.empty() && steps[v] < 0.5;
-    const bool proposes = step(patch, density);
+      m_is_held[v] = samples.are_bounded() && steps[v] < 0.5;
+    const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
   }
@@ -138,9 +141,9 @@ public:
 private:
   // Newton steps from where the vertices are now
   template <typename Density>
-  bool step(const Patch& patch, const Density& density)
+  bool step(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
-    linearize(patch, density);
+    linearize(patch, samples, density);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
     m_newton.set_strain_resistance(m_strain_resistance);
     const Projected_newton::Outcome outcome =
@@ -161,7 +164,7 @@ private:
   }
 
   template <typename Density>
-  void linearize(const Patch& patch, const Density& density)
+  void linearize(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     find_planes(patch);
     find_descent(patch, density);
@@ -192,7 +195,7 @@ private:
       for(int i = 0; i < 3; ++i)
         m_problem.corner_maps[3 * e + i] =
           m_planes[e].transpose() * m_frames[patch.elements[e].vertices[i]];
-    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_frames[v]; });
+    m_problem.drift.collect(patch, samples, [&](int v) -> const Tangent_frame& { return m_frames[v]; });
   }
 
   // the planes of the elements, and their shapes there

@@ -84,7 +84,7 @@ public:
   bool solve(const std::vector<std::vector<int>>& patches,
              Moves moves,
              const Density& density,
-             const Acceptance_test::Limits& limits)
+             const Solver_settings& settings)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
@@ -96,7 +96,7 @@ public:
           return;
         try
         {
-          solver.solve(patches[i], m_state, density, limits, m_drift_guard, moves, solved[i]);
+          solver.solve(patches[i], m_state, density, settings, m_drift_guard, moves, solved[i]);
         }
         catch(const Interrupted&)
         {
@@ -128,7 +128,7 @@ private:
     for(const int f : patch.faces)
       m_geometry.set(m_state.mesh, f,
                      [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(patch.faces, patch.guests, s.samples);
+    m_drift_guard.take_back(patch.faces, s.guests, s.samples);
   }
 
   void report(const Solved_patch& s)

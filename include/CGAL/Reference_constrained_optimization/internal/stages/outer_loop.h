@@ -98,11 +98,11 @@ private:
   void optimize()
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    m_limits.accepts_all = m_parameters.accepts_all;
-    m_limits.strain_resistance = largest_resistance;
+    m_settings.limits.accepts_all = m_parameters.accepts_all;
+    m_settings.strain_resistance = largest_resistance;
     m_exponent.template advance<ConcurrencyTag>(m_state);
     Global_measure before = scale_to_density();
-    m_limits.sharpest = before.sharpest;
+    m_settings.limits.cosine = before.sharpest;
     m_initial_energy = energy_of_caller();
 
     m_state.guards_angles = m_prizes_angles;
@@ -138,8 +138,8 @@ private:
     m_cap = 10 * typical;
     m_rest_energy = rest_energy(m_state, m_density);
     const Global_measure now = measure<ConcurrencyTag>(m_state, m_density, m_cap);
-    m_limits.worst = now.worst;
-    m_limits.bad = 1.5 * typical;
+    m_settings.limits.density = now.worst;
+    m_settings.bad_density = 1.5 * typical;
     return now;
   }
 
@@ -251,11 +251,11 @@ private:
       m_visitor.on_iteration_end(i, energy / double(m_state.elements.size()));
       if(!complete)
         return false;
-      m_limits.worst = (std::min)(m_limits.worst, after.worst);
+      m_settings.limits.density = (std::min)(m_settings.limits.density, after.worst);
       const auto& progress = m_round_solver.progress();
       if(progress.could_move > 0)
-        m_limits.strain_resistance =
-          (std::min)(largest_resistance, adapted_resistance(m_limits.strain_resistance,
+        m_settings.strain_resistance =
+          (std::min)(largest_resistance, adapted_resistance(m_settings.strain_resistance,
                                                             progress.taken / progress.could_move));
       m_held_up = is_held_up() ? m_held_up + 1 : 0;
       const int patience = 5; // large patches may go slowly, but they go further
@@ -265,7 +265,7 @@ private:
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       std::vector<char> moved = progress.moved;
       if(!falls && repairs)
-        keep_near_bad<ConcurrencyTag>(m_state, m_density, m_limits.bad,
+        keep_near_bad<ConcurrencyTag>(m_state, m_density, m_settings.bad_density,
                                       moved); // all is well elsewhere
       const bool moves = std::find(moved.begin(), moved.end(), char(1)) != moved.end();
       // without a test the energy may rise: that is not convergence either
@@ -358,7 +358,7 @@ private:
       },
       [&]() { patches = divide(m_is_active, m_partition); });
     return (!flattens || visit(is_wanted, m_selection)) && !m_interruption.stops() &&
-           m_round_solver.solve(patches, Moves::on_surface, m_density, m_limits);
+           m_round_solver.solve(patches, Moves::on_surface, m_density, m_settings);
   }
 
   // the active faces that are turned over or folded or in bad regions, and those around them
@@ -371,7 +371,7 @@ private:
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     m_interruption.check();
     const std::vector<char> is_bad =
-      bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_limits.bad, smallest_region);
+      bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_settings.bad_density, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
     m_interruption.check();
@@ -395,14 +395,14 @@ private:
   bool revisit_worst()
   {
     // where the angles are finished, that searches, too
-    const double bad_for_search = (finishes_angles() ? 4 : 1) * m_limits.bad;
+    const double bad_for_search = (finishes_angles() ? 4 : 1) * m_settings.bad_density;
     using Stage = Worst_faces_stage<ConcurrencyTag, Density>;
-    Stage stage(m_state, m_density, m_limits.bad, bad_for_search, &m_interruption);
+    Stage stage(m_state, m_density, m_settings.bad_density, bad_for_search, &m_interruption);
     return stage.run(
       m_parameters.use_on_surface_steps,
       [&](const std::vector<char>& faces, Moves moves, const typename Stage::Goal& goal) {
-        m_limits.worst = (std::min)(m_limits.worst, goal.worst);
-        m_limits.searched = goal.searched;
+        m_settings.limits.density = (std::min)(m_settings.limits.density, goal.worst);
+        m_settings.search_density = goal.searched;
         return moves == Moves::flattened ? visit(faces, m_small_selection)
                                          : visit_regions(faces, moves, m_density);
       });
@@ -415,10 +415,10 @@ private:
 
   void finish_angles()
   {
-    const Acceptance_test::Limits limits = m_limits;
+    const Solver_settings settings = m_settings;
     m_round_solver.set_finishing(true);
     m_interruption.check();
-    m_limits.worst = m_limits.searched = std::numeric_limits<double>::infinity();
+    m_settings.limits.density = m_settings.search_density = std::numeric_limits<double>::infinity();
     Saved_state saved(m_state, m_round_solver.drift_guard());
     using Stage = Finishing_stage<ConcurrencyTag>;
     const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
@@ -435,8 +435,8 @@ private:
         [&](const typename Stage::Faces& faces, const typename Stage::Goal& goal, bool searches) {
           saved.add(faces.list);
           update_sums();
-          m_limits.sharpest = goal.sharpest;
-          m_limits.sharp = goal.searched;
+          m_settings.limits.cosine = goal.sharpest;
+          m_settings.search_cosine = goal.searched;
           return visit_regions(
             faces.is_in, searches ? Moves::by_search : Moves::on_surface,
             Angle_barrier_density<Density>(m_density, goal.target, goal.steepness));
@@ -448,7 +448,7 @@ private:
       saved.restore();
       throw;
     }
-    m_limits = limits;
+    m_settings = settings;
     m_round_solver.set_finishing(false);
   }
 
@@ -476,7 +476,7 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!m_round_solver.solve(patches, Moves::flattened, m_density, m_limits))
+      if(!m_round_solver.solve(patches, Moves::flattened, m_density, m_settings))
         return false;
     }
   }
@@ -501,7 +501,7 @@ private:
     const std::vector<std::vector<int>> patches =
       m_small_partition.divide_regions(is_wanted, m_random);
     m_result.times.selection += seconds_since(start);
-    return m_round_solver.solve(patches, moves, density, m_limits);
+    return m_round_solver.solve(patches, moves, density, m_settings);
   }
 
   Optimization_state& m_state;
@@ -519,7 +519,7 @@ private:
   Patch_rounds m_rounds;
   Round_solver<ConcurrencyTag, Visitor> m_round_solver;
   std::vector<char> m_is_active, m_is_untouched; // per face
-  Acceptance_test::Limits m_limits;
+  Solver_settings m_settings;
   std::size_t m_next_to_flatten = 0; // iteration
   int m_held_up = 0;                 // iterations in a row
   bool m_has_rested = false;

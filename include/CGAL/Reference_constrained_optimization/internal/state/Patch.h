@@ -6,12 +6,9 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_PATCH_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/objective/drift_barrier.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +16,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A disk of faces with local indices: everything that movers and the acceptance test need of it.
+// Some faces with local indices: where they are, what may move, and what energy is asked of them.
 struct Patch
 {
   std::vector<int> faces;    // of the whole mesh
@@ -41,12 +38,6 @@ struct Patch
   std::vector<char> bounds_turn, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
-  // by how much the sum of the faces' smallest angles may fall, in degrees
-  double angle_allowance = std::numeric_limits<double>::infinity();
-  // by how much its part of the volume (six times that) may grow and shrink
-  double largest_volume_gain = std::numeric_limits<double>::infinity();
-  double largest_volume_loss = std::numeric_limits<double>::infinity();
-  bool guards_volume() const { return std::isfinite(largest_volume_gain); }
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -58,43 +49,6 @@ struct Patch
   bool is_split = false;
   Indexed_mesh split;
   std::vector<int> split_polygon, first_triangle;
-
-  // The samples of the drift barrier; none if it is off. Directions are unit vectors from R to the
-  // mesh, known where the barrier is felt.
-  Drift_barrier barrier;
-  double drift_bound = 0;
-  const std::vector<double>* local_bounds =
-    nullptr;                        // per triangle of R, if it is not the same everywhere
-  std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
-  // of a sample of a triangle of the patch whose closest point is in a triangle of R
-  double bound_of(int triangle, int reference_face) const
-  {
-    const double bound = local_bounds ? (*local_bounds)[reference_face] : drift_bound;
-    return least_bounds.empty() ? bound : (std::max)(bound, least_bounds[polygon_of(triangle)]);
-  }
-
-  // a point of the mesh, see drift_samples.h
-  struct Sample
-  {
-    int face = -1; // of R, where its closest point is
-    double distance = 0;
-    double bound = 0; // there
-    Vector_3 direction = Vector_3::Zero();
-  };
-  std::vector<Sample> samples;
-
-  // a point of R whose closest point of the mesh is in the patch
-  struct Guest
-  {
-    int witness;     // of R
-    int polygon;     // local face that holds its closest point
-    double distance; // to it
-    double bound;
-    int triangle = -1; // local
-    Vector_3 barycentric = Vector_3::Zero();
-    Vector_3 direction = Vector_3::Zero();
-  };
-  std::vector<Guest> guests;
 };
 
 // Builds patches; keeps its index maps from call to call.
@@ -168,16 +122,6 @@ public:
         patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
-    const double share = double(faces.size()) / double(mesh.number_of_faces());
-    if(state.guards_angles)
-      patch.angle_allowance = share * (std::max)(0., state.angle_surplus);
-    if(state.guards_volume())
-    {
-      patch.largest_volume_gain =
-        share * (std::max)(0., state.largest_volume_change - state.volume_change);
-      patch.largest_volume_loss =
-        share * (std::max)(0., state.largest_volume_change + state.volume_change);
-    }
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);

@@ -1,0 +1,40 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Trial.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Violating_vertices.h>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// No angle of a triangle falls below the smallest that the mesh had, or further below.
+struct Smallest_angle : Invariant
+{
+  double largest_cosine = 1;
+
+  bool holds(const Trial& trial, Violating_vertices& violating) const
+  {
+    bool holds = true;
+    for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
+    {
+      const double cosine = trial.after.cosines[f];
+      if(cosine > largest_cosine && cosine > trial.before.cosines[f])
+      {
+        holds = false;
+        violating.add_face(f);
+      }
+    }
+    return holds;
+  }
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H
