@@ -122,15 +122,18 @@ void optimize(const FaceRange& range,
   check_location_map(surface, np);
   interruption.check();
   // energies are told of lengths as the caller knows them
-  const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
-                               mean_edge_length(copy.mesh, mesh_points),
-                               surface_area(copy.mesh, mesh_points),
-                               surface_area(surface.mesh(), reference_points));
+  const Mesh_energy_context context(
+    mesh, vpm,
+    Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
+                   mean_edge_length(copy.mesh, mesh_points), surface_area(copy.mesh, mesh_points),
+                   surface_area(surface.mesh(), reference_points)));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
   const Element_set elements(energy, context, is_in_range, frame);
   interruption.check();
-  Optimization_state state{copy.mesh, surface,     elements,       {}, {}, {},
-                           {},        is_in_range, frame.caution()};
+  Optimization_state state{copy.mesh, surface, elements, {}, {}};
+  state.is_in_range = is_in_range;
+  state.caution = frame.caution();
+  state.stencils = Stencil_set(energy, context, frame);
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
   // a copy of the mesh is no other reference
@@ -179,9 +182,9 @@ void optimize(const FaceRange& range,
   result.largest_initial_distance = view.largest_distance();
   result.times.setup = seconds_since(start);
 
-  const auto& density = energy.density();
-  typedef typename std::decay<decltype(density)>::type Density;
-  const Global_measure initial = view.measure<ConcurrencyTag>(density);
+  const auto densities = element_densities(energy);
+  typedef std::decay_t<decltype(densities)> Densities;
+  const Global_measure initial = view.measure<ConcurrencyTag>(densities);
   const double number_of_elements = (std::max)(1, elements.size());
   result.initial_energy = initial.energy / number_of_elements;
   result.initial_number_of_flips = initial.flips;
@@ -198,7 +201,7 @@ void optimize(const FaceRange& range,
     Mending<ConcurrencyTag> mending(view);
     if(!loop_parameters.accepts_all)
       mending.run();
-    Global_measure final = view.measure<ConcurrencyTag>(density);
+    Global_measure final = view.measure<ConcurrencyTag>(densities);
     const auto has_risen = [&]() {
       return final.defects() > initial.defects() ||
              (final.defects() == initial.defects() && final.energy > initial.energy);
@@ -214,7 +217,7 @@ void optimize(const FaceRange& range,
           mending.grow())
     {
       mending.run();
-      final = view.measure<ConcurrencyTag>(density);
+      final = view.measure<ConcurrencyTag>(densities);
       if(std::isfinite(result.drift_bound))
         result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
     }
@@ -243,7 +246,7 @@ void optimize(const FaceRange& range,
   };
   if(result.number_of_free_vertices > 0)
   {
-    Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, framed_parameters, visitor,
+    Outer_loop<ConcurrencyTag, Densities, Visitor> loop(state, densities, framed_parameters, visitor,
                                                       result, interruption);
     try
     {

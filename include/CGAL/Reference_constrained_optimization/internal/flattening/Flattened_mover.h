@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Element_densities.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
@@ -79,7 +80,7 @@ public:
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
     set_up_problem(patch, samples);
     m_optimizer.analyze(m_problem);
-    const bool proposes = optimize(density);
+    const bool proposes = optimize(patch, density);
     m_optimization_time = seconds_since(start_of_descent);
     return proposes;
   }
@@ -98,7 +99,7 @@ public:
     if(is_locally_injective(patch.triangles(), u))
     {
       set_up_problem(patch, samples);
-      proposes = optimize(density);
+      proposes = optimize(patch, density);
     }
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -126,10 +127,11 @@ public:
 
 private:
   template <typename Density>
-  bool optimize(const Density& density)
+  bool optimize(const Patch& patch, const Density& density)
   {
     m_target = m_flattening.positions;
-    return m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps, 1e-8)
+    const Patch_elements<Density> elements{density, patch.elements};
+    return m_optimizer.minimize(m_problem, elements, m_target, m_parameters.newton_steps, 1e-8)
              .steps > 0;
   }
 
@@ -157,14 +159,17 @@ private:
         signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
     }
     find_motions(patch, samples);
-    m_problem.drift.collect(patch, samples, [&](int v) -> const Tangent_frame& { return m_motions[v]; });
+    const auto motion = [&](int v) -> const Tangent_frame& { return m_motions[v]; };
+    m_problem.start = u;
+    m_problem.drift.collect(patch, samples, motion);
+    m_problem.stencils.collect(patch, motion);
   }
 
   // How vertices move along R when they move in the plane: the mean of the triangles around them, in
   // the tangent plane of R.
   void find_motions(const Patch& patch, const Patch_samples& samples)
   {
-    if(!samples.are_bounded())
+    if(!samples.are_bounded() && patch.stencils.empty())
       return;
     const Indexed_mesh& triangles = patch.triangles();
     const std::vector<Vector_2>& u = m_flattening.positions;

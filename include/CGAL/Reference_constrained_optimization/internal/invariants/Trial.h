@@ -20,6 +20,7 @@ struct Patch_quantities
   std::vector<Vector_3> normals; // per face
   std::vector<double> densities; // per element
   std::vector<double> cosines;   // per face: of its smallest angle
+  std::vector<double> stencils;  // per stencil: its value
 
   // measures some faces with their vertices at `placed`
   template <typename Density>
@@ -40,13 +41,17 @@ struct Patch_quantities
         densities[e] = element_energy(density, patch.elements[e], vertex);
       cosines[f] = smallest_angle_cosine(mesh, vertex, f);
     }
+    stencils.clear();
+    for(const Patch::Stencil& s : patch.stencils)
+      stencils.push_back(patch.value(s, placed));
   }
 };
 
 // Sums over a patch and its boundary, before and after.
 struct Patch_measure
 {
-  double energy = 0;
+  double energy = 0;        // of elements and stencils
+  double shared_energy = 0; // of them that of stencils which depend on vertices that others may move
   double drift_energy = 0;  // what the drift barrier adds
   double angles = 0;        // sum of the faces' smallest, in degrees, where their mean may not fall
   double volume = 0;        // six times that of the cones over its faces, where that is bounded

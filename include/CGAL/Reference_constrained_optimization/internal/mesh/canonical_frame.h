@@ -87,6 +87,11 @@ public:
     return m_resolution == 0 ? given : without_noise(given / m_unit);
   }
 
+  Vector_3 to_caller(const Vector_3& p) const
+  {
+    return m_resolution == 0 ? p : Vector_3((p + m_resolution * m_shifts[0]) * m_unit + m_origin);
+  }
+
   // what the frame would be without the grid
   Vector_3 without_rounding(const Vector_3& p) const
   {

@@ -101,6 +101,8 @@ private:
     for(const int f : m_star)
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         sum += element_energy(density, patch.elements[e], vertex);
+    for(const int s : m_star_stencils)
+      sum += patch.value(patch.stencils[s], m_placed);
     return sum;
   }
 
@@ -168,6 +170,15 @@ private:
     };
     collect(patch.polygons, m_star);
     collect(patch.triangles(), m_triangles);
+    m_star_stencils.clear();
+    for(std::size_t s = 0; s < patch.stencils.size(); ++s)
+      for(int i = 0; i < patch.stencils[s].size; ++i)
+        if(std::find(vertices.begin(), vertices.end(), patch.stencils[s].vertices[i]) !=
+           vertices.end())
+        {
+          m_star_stencils.push_back(int(s));
+          break;
+        }
   }
 
   void sort_guests(const Patch& patch)
@@ -376,7 +387,8 @@ private:
   const Patch_samples* m_samples = nullptr;
   std::vector<Placed_vertex> m_placed;
   std::vector<std::vector<int>> m_guests;           // per polygon
-  std::vector<int> m_star, m_triangles;             // around the vertices that move
+  // around the vertices that move: faces, triangles, and stencils of the patch
+  std::vector<int> m_star, m_triangles, m_star_stencils;
   std::vector<Placed_vertex> m_here, m_best_places; // of these
   std::vector<Group> m_groups;
   std::vector<double> m_length; // per vertex: of its way

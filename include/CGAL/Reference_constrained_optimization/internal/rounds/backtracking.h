@@ -162,6 +162,11 @@ private:
     Patch_measure m;
     for(const double d : m_after.densities)
       m.energy += d;
+    for(std::size_t s = 0; s < m_after.stencils.size(); ++s)
+    {
+      m.energy += m_after.stencils[s];
+      m.shared_energy += trial.patch.stencils[s].is_shared ? m_after.stencils[s] : 0;
+    }
     for_each_invariant([&](auto& invariant) { invariant.sum_up(trial, m); });
     return m;
   }

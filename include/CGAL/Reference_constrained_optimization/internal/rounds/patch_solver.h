@@ -46,7 +46,8 @@ struct Solved_patch
   std::vector<Patch_samples::Guest> guests;
   Drift_guard::Known_samples samples;
   std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
-  // the free vertices, in local indices: those of faces at the boundary, and the others
+  std::vector<int> shared_stencils; // that depend on vertices which others may move
+  // the free vertices, in local indices: those that other patches see, and the others
   std::vector<int> outer_vertices, inner_vertices;
   Backtracking::Decision decision;
   std::vector<Placed_vertex> placed;
@@ -67,6 +68,7 @@ struct Solved_patch
     guests = std::vector<Patch_samples::Guest>();
     samples = Drift_guard::Known_samples();
     boundary = std::vector<std::array<int, 2>>();
+    shared_stencils = std::vector<int>();
     outer_vertices = std::vector<int>();
     inner_vertices = std::vector<int>();
     placed = std::vector<Placed_vertex>();
@@ -164,6 +166,14 @@ private:
           s.boundary.push_back({{s.patch.faces[f], s.patch.outside_face[c]}});
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
+        }
+      for(const Patch::Stencil& stencil : s.patch.stencils)
+        if(stencil.is_shared)
+        {
+          s.shared_stencils.push_back(stencil.number);
+          for(int i = 0; i < stencil.size; ++i)
+            if(stencil.vertices[i] >= 0)
+              is_outer[stencil.vertices[i]] = 1;
         }
       for(std::size_t v = 0; v < is_outer.size(); ++v)
         if(s.patch.is_free[v])

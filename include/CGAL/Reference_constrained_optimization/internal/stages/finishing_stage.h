@@ -20,23 +20,6 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Whether all elements are triangles with an equilateral triangle at rest: then angles are what the
-// energy is about.
-inline bool prizes_angles(const Element_set& elements)
-{
-  for(int e = 0; e < elements.size(); ++e)
-  {
-    if(elements[e].is_in_quad)
-      return false;
-    const Eigen::Matrix2d rest = elements[e].rest_inverse.inverse();
-    const double a = rest.col(0).norm(), b = rest.col(1).norm();
-    const double c = (rest.col(1) - rest.col(0)).norm();
-    if(std::abs(a - b) > 1e-9 * a || std::abs(a - c) > 1e-9 * a)
-      return false;
-  }
-  return elements.size() > 0;
-}
-
 // Raises the smallest angle of a mesh with the help of a barrier on the angles below a target
 // (Angle_barrier_density), on small patches around the faces with such angles; the energy is what it
 // was everywhere else. What can be reached is not known beforehand: the target runs ahead of the
@@ -61,7 +44,7 @@ public:
     std::vector<char> is_in; // per face of the mesh
   };
 
-  // `energy(f)` is that of a face; their sum may rise, but not beyond `largest_energy`.
+  // `energy(f)` is that of a face; their sum and that of stencils may rise, but not beyond `largest_energy`.
   Finishing_stage(const Optimization_state& state,
                   std::function<double(int)> energy,
                   double largest_energy,
@@ -111,7 +94,7 @@ public:
         goes_on = search_below(lagging, goal, visit);
       const double price = 0.02 + 0.05 * (m_minimum - minimum);
       const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price &&
-                         m_energy <= m_largest_energy;
+                         energy() <= m_largest_energy;
       if(!holds)
       {
         restore();
@@ -173,7 +156,7 @@ private:
       want(is_wanted);
       const Goal goal{minimum, flattest, cosine(minimum), cosine(minimum)};
       const bool goes_on = visit_wanted(goal, false, visit);
-      if(m_minimum < minimum || mean() < mean_before || m_energy > m_largest_energy)
+      if(m_minimum < minimum || mean() < mean_before || energy() > m_largest_energy)
       {
         restore();
         return;
@@ -325,6 +308,7 @@ private:
 
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
   double mean() const { return m_sum / m_number_of_faces; }
+  double energy() const { return m_energy + energy_of_stencils(m_state); }
 
   // of a face
   double smallest_angle(int f) const

@@ -37,26 +37,26 @@ namespace internal {
 // patches of a round can be solved independently of one another, from the state before the round;
 // they are then committed in a fixed order, where only the edges between two of them are tested
 // again. The result does not depend on the number of threads.
-template <typename ConcurrencyTag, typename Density, typename Visitor>
+template <typename ConcurrencyTag, typename Densities, typename Visitor>
 class Outer_loop
 {
 public:
   Outer_loop(Optimization_state& state,
-             const Density& density,
+             const Densities& densities,
              const Loop_parameters& parameters,
              Visitor& visitor,
              Result& result,
              Interruption& interruption)
     : m_state(state),
-      m_target_density(density),
-      m_exponent(density),
-      m_density(m_exponent.density()),
+      m_target_densities(densities),
+      m_exponent(densities),
+      m_densities(m_exponent.densities()),
       m_parameters(parameters),
       m_visitor(visitor),
       m_result(result),
       m_interruption(interruption),
       m_random(parameters.random_seed),
-      m_prizes_angles(prizes_angles(state.elements)),
+      m_prizes_angles(state.elements.criterion() == Element_criterion::smallest_angle),
       m_selection(state.mesh, sized(parameters, state.mesh, m_prizes_angles)),
       m_small_selection(state.mesh, small(parameters.selection, state.mesh)),
       m_partition(state.mesh,
@@ -133,11 +133,11 @@ private:
   {
     // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
     // the mean of the better half at most
-    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_density);
+    const double typical = lower_half_mean<ConcurrencyTag>(m_state, m_densities);
     m_interruption.check();
     m_cap = 10 * typical;
-    m_rest_energy = rest_energy(m_state, m_density);
-    const Global_measure now = measure<ConcurrencyTag>(m_state, m_density, m_cap);
+    m_rest_energy = rest_energy(m_state, m_densities);
+    const Global_measure now = measure<ConcurrencyTag>(m_state, m_densities, m_cap);
     m_settings.limits.density = now.worst;
     m_settings.bad_density = 1.5 * typical;
     return now;
@@ -230,7 +230,7 @@ private:
         return true;
       before = number;
       const std::vector<char> faces = faces_around<ConcurrencyTag>(m_state.mesh, is_in, 1);
-      if(!completes([&]() { return visit_regions(faces, Moves::opening, m_density); }))
+      if(!completes([&]() { return visit_regions(faces, Moves::opening, m_densities); }))
         return false;
     }
   }
@@ -246,7 +246,7 @@ private:
       update_sums();
       ++m_result.number_of_iterations;
       const bool complete = completes([&]() { return visit_active(); });
-      const Global_measure after = measure<ConcurrencyTag>(m_state, m_density, m_cap);
+      const Global_measure after = measure<ConcurrencyTag>(m_state, m_densities, m_cap);
       const double energy = m_exponent.is_complete() ? after.energy : energy_of_caller();
       m_visitor.on_iteration_end(i, energy / double(m_state.elements.size()));
       if(!complete)
@@ -265,7 +265,7 @@ private:
         has_fallen(before.energy, after.energy) || after.defects() < before.defects();
       std::vector<char> moved = progress.moved;
       if(!falls && repairs)
-        keep_near_bad<ConcurrencyTag>(m_state, m_density, m_settings.bad_density,
+        keep_near_bad<ConcurrencyTag>(m_state, m_densities, m_settings.bad_density,
                                       moved); // all is well elsewhere
       const bool moves = std::find(moved.begin(), moved.end(), char(1)) != moved.end();
       // without a test the energy may rise: that is not convergence either
@@ -295,7 +295,7 @@ private:
 
   double energy_of_caller() const
   {
-    return measure<ConcurrencyTag>(m_state, m_target_density,
+    return measure<ConcurrencyTag>(m_state, m_target_densities,
                                    std::numeric_limits<double>::infinity())
       .energy;
   }
@@ -358,7 +358,7 @@ private:
       },
       [&]() { patches = divide(m_is_active, m_partition); });
     return (!flattens || visit(is_wanted, m_selection)) && !m_interruption.stops() &&
-           m_round_solver.solve(patches, Moves::on_surface, m_density, m_settings);
+           m_round_solver.solve(patches, Moves::on_surface, m_densities, m_settings);
   }
 
   // the active faces that are turned over or folded or in bad regions, and those around them
@@ -371,7 +371,7 @@ private:
     std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
     m_interruption.check();
     const std::vector<char> is_bad =
-      bad_regions<ConcurrencyTag>(m_state, m_density, 2 * m_settings.bad_density, smallest_region);
+      bad_regions<ConcurrencyTag>(m_state, m_densities, 2 * m_settings.bad_density, smallest_region);
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
       is_wanted[f] = is_wanted[f] || is_bad[f];
     m_interruption.check();
@@ -396,15 +396,15 @@ private:
   {
     // where the angles are finished, that searches, too
     const double bad_for_search = (finishes_angles() ? 4 : 1) * m_settings.bad_density;
-    using Stage = Worst_faces_stage<ConcurrencyTag, Density>;
-    Stage stage(m_state, m_density, m_settings.bad_density, bad_for_search, &m_interruption);
+    using Stage = Worst_faces_stage<ConcurrencyTag, Densities>;
+    Stage stage(m_state, m_densities, m_settings.bad_density, bad_for_search, &m_interruption);
     return stage.run(
       m_parameters.use_on_surface_steps,
       [&](const std::vector<char>& faces, Moves moves, const typename Stage::Goal& goal) {
         m_settings.limits.density = (std::min)(m_settings.limits.density, goal.worst);
         m_settings.search_density = goal.searched;
         return moves == Moves::flattened ? visit(faces, m_small_selection)
-                                         : visit_regions(faces, moves, m_density);
+                                         : visit_regions(faces, moves, m_densities);
       });
   }
 
@@ -425,7 +425,7 @@ private:
     const auto energy = [&](int f) {
       double sum = 0;
       for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
-        sum += element_energy(m_target_density, m_state.elements[e], vertex);
+        sum += element_energy(m_target_densities, m_state.elements[e], vertex);
       return sum;
     };
     Stage stage(m_state, energy, m_initial_energy, &m_interruption);
@@ -439,7 +439,7 @@ private:
           m_settings.search_cosine = goal.searched;
           return visit_regions(
             faces.is_in, searches ? Moves::by_search : Moves::on_surface,
-            Angle_barrier_density<Density>(m_density, goal.target, goal.steepness));
+            Angle_barrier_density<Densities>(m_densities, goal.target, goal.steepness));
         },
         [&]() { saved.forget(); }, [&]() { saved.restore(); });
     }
@@ -476,7 +476,7 @@ private:
       m_result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
-      if(!m_round_solver.solve(patches, Moves::flattened, m_density, m_settings))
+      if(!m_round_solver.solve(patches, Moves::flattened, m_densities, m_settings))
         return false;
     }
   }
@@ -505,15 +505,15 @@ private:
   }
 
   Optimization_state& m_state;
-  const Density& m_target_density; // what the caller asked for
-  Exponent_continuation<Density> m_exponent;
-  const Density& m_density; // what is optimized now
+  const Densities& m_target_densities; // what the caller asked for
+  Exponent_continuation<Densities> m_exponent;
+  const Densities& m_densities; // what is optimized now
   Loop_parameters m_parameters;
   Visitor& m_visitor;
   Result& m_result;
   Interruption& m_interruption;
   CGAL::Random m_random;
-  bool m_prizes_angles; // whether the energy does
+  bool m_prizes_angles; // whether worst elements are judged by their angles
   Patch_selection m_selection, m_small_selection;
   Patch_partition m_partition, m_small_partition;
   Patch_rounds m_rounds;

@@ -39,6 +39,29 @@ struct Patch
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
 
+  // The stencils with a free vertex. Of their vertices those that are not in the patch stay where they are:
+  // number ~v of `outside_points`.
+  struct Stencil
+  {
+    int number, size;                          // of all stencils
+    std::array<int, largest_stencil> vertices; // local
+    bool is_shared;                            // has a vertex that others may move
+  };
+  std::vector<Stencil> stencils;
+  std::vector<Vector_3> outside_points;
+  const Stencil_set* all_stencils = nullptr;
+  const Vector_3& position(int v, const std::vector<Placed_vertex>& vertices) const
+  {
+    return v >= 0 ? vertices[v].position : outside_points[~v];
+  }
+  double value(const Stencil& stencil, const std::vector<Placed_vertex>& vertices) const
+  {
+    Stencil_points points;
+    for(int i = 0; i < stencil.size; ++i)
+      points[i] = position(stencil.vertices[i], vertices);
+    return all_stencils->value(stencil.number, points);
+  }
+
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
 
@@ -133,12 +156,41 @@ public:
       patch.number_of_free_vertices += patch.is_free.back();
     }
     collect_sliding(state, patch);
+    collect_stencils(state, patch);
     if(patch.is_split)
       split(patch);
     return patch;
   }
 
 private:
+  void collect_stencils(const Optimization_state& state, Patch& patch)
+  {
+    patch.all_stencils = &state.stencils;
+    if(state.stencils.empty())
+      return;
+    m_stencil_stamp.resize(state.stencils.size(), 0);
+    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
+      if(patch.is_free[i])
+        state.stencils.for_each_at(patch.vertices[i], [&](int s) {
+          if(m_stencil_stamp[s] == m_stamp)
+            return;
+          m_stencil_stamp[s] = m_stamp;
+          const Stencil_set::Stencil& stencil = state.stencils[s];
+          Patch::Stencil local{s, stencil.size, {}, false};
+          for(int j = 0; j < stencil.size; ++j)
+          {
+            const int v = stencil.vertices[j];
+            const bool is_inside = m_vertex_stamp[v] == m_stamp;
+            local.is_shared =
+              local.is_shared || (state.is_free[v] && !(is_inside && patch.is_free[m_local[v]]));
+            local.vertices[j] = is_inside ? m_local[v] : ~int(patch.outside_points.size());
+            if(!is_inside)
+              patch.outside_points.push_back(state.vertices[v].position);
+          }
+          patch.stencils.push_back(local);
+        });
+  }
+
   // all faces of a vertex that slides in the patch are in it, and so are its neighbours
   void collect_sliding(const Optimization_state& state, Patch& patch) const
   {
@@ -193,6 +245,7 @@ private:
 
   std::vector<int> m_face_stamp, m_vertex_stamp, m_local;
   std::vector<int> m_local_corner; // per face: its first corner in the patch
+  std::vector<int> m_stencil_stamp;
   int m_stamp = 0;
 };
 
