@@ -7,7 +7,6 @@
 
 #include <CGAL/Reference_constrained_optimization/Energy_element.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
 
 #include <array>
 #include <cmath>
@@ -30,12 +29,13 @@ public:
     Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
 
-  // of the faces that are marked; of all if there are no marks
+  // of the faces that are marked; of all if there are no marks. Lengths of rest triangles are told in
+  // another unit: `unit` of these make one of the mesh.
   template <typename Energy>
   Element_set(const Energy& energy,
               const Energy_context& context,
               const std::vector<char>& is_in_range = std::vector<char>(),
-              const Canonical_frame& frame = Canonical_frame())
+              double unit = 1)
   {
     const std::size_t n = context.number_of_faces();
     m_begin.reserve(n + 1);
@@ -64,8 +64,7 @@ public:
                                 " names a corner that the face does not have");
           element.vertices[i] = context.vertex(f, e.corners[i]);
         }
-        const Eigen::Matrix2d rest = e.rest.unaryExpr([&](double x) { return frame.length(x); });
-        element.rest_inverse = rest.inverse();
+        element.rest_inverse = (e.rest / unit).inverse();
         element.is_in_quad = context.degree(f) > 3;
         m_elements.push_back(element);
       }

@@ -205,8 +205,8 @@ private:
     for(const int f : m_changed)
     {
       details.normals[f] = face_normal(mesh, vertex, f);
-      details.flipped[f] = char(is_flipped(mesh, vertex, f, details.normals[f], patch.caution) +
-                                is_nonconvex(mesh, vertex, f));
+      details.flipped[f] =
+        char(is_flipped(mesh, vertex, f, details.normals[f]) + is_nonconvex(mesh, vertex, f));
       if(!patch.bounds_turn.empty() && patch.bounds_turn[f])
         details.turns[f] = face_turn(mesh, *m_reference, vertex, f, details.normals[f]);
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
@@ -227,9 +227,9 @@ private:
                    o >= 0 ? details.normals[mesh.corner_face[o]] : m_outside_normal[c]);
         if(o >= 0)
           details.folded[(std::min)(c, o)] =
-            is_folded(details.normals[f], details.normals[mesh.corner_face[o]], patch.caution);
+            is_folded(details.normals[f], details.normals[mesh.corner_face[o]]);
         else if(patch.outside_face[c] >= 0)
-          details.folded[c] = is_folded(details.normals[f], m_outside_normal[c], patch.caution);
+          details.folded[c] = is_folded(details.normals[f], m_outside_normal[c]);
       }
   }
 
