@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 
 struct Variant
@@ -27,7 +26,7 @@ const std::array<Variant, 8> variants = {{{"as is", 1, 0, 0},
                                           {"times 2^20", 1048576, 0, 0},
                                           {"times 1e-6", 1e-6, 0, 0},
                                           {"times 1e6", 1e6, 0, 0},
-                                          {"1e3 diagonals away", 1, 1e3, 0},
+                                          {"1e6 diagonals away", 1, 1e6, 0},
                                           {"another seed", 1, 0, 0, 1},
                                           {"noise", 1, 0, 0.3}}};
 
@@ -40,12 +39,6 @@ inline bool is_exact(const Variant& v)
 {
   int exponent = 0;
   return std::frexp(v.scale, &exponent) == 0.5 && v.shift == 0 && v.noise == 0 && v.seed == 0;
-}
-
-// the input in another unit or place, and nothing else
-inline bool is_rounded(const Variant& v)
-{
-  return (v.scale != 1 || v.shift != 0) && v.noise == 0 && v.seed == 0;
 }
 
 inline bool is_finite(const Kernel::Point_3& p)
@@ -61,24 +54,6 @@ inline double diagonal(const Mesh& mesh)
     if(is_finite(mesh.point(v)))
       box += mesh.point(v).bbox();
   return mesh.is_empty() ? 0 : std::hypot(box.x_span(), box.y_span(), box.z_span());
-}
-
-// the smallest height of a triangle at a corner of a face, over the diagonal
-inline double smallest_relative_height(const Mesh& mesh, double diagonal)
-{
-  double smallest = std::numeric_limits<double>::infinity();
-  for(const Mesh::Halfedge_index h : mesh.halfedges())
-  {
-    if(mesh.is_border(h))
-      continue;
-    const Kernel::Point_3 &a = mesh.point(mesh.source(h)), &b = mesh.point(mesh.target(h)),
-                          &c = mesh.point(mesh.target(mesh.next(h)));
-    const double longest = std::sqrt((std::max)(
-      {CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)}));
-    const double doubled_area = 2 * std::sqrt(CGAL::squared_area(a, b, c));
-    smallest = (std::min)(smallest, longest > 0 ? doubled_area / longest / diagonal : 0);
-  }
-  return smallest;
 }
 
 // the mean length of the edges whose vertices are finite

@@ -37,9 +37,8 @@ namespace CGAL {
  * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
- * and seed give the same bits for any number of threads. In other units of length, or up to a thousand
- * diagonals away from the origin, the result is the same but for the rounding of coordinates, unless a
- * face is thinner than a billionth of the reference's diagonal (and, rarely, far away).
+ * and seed give the same bits for any number of threads, and in units of length that are powers of two of
+ * each other. In other units, and at other places, the result differs as with another seed.
  *
  * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
  * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads

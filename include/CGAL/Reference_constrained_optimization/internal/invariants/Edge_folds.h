@@ -25,7 +25,7 @@ struct Edge_folds : Invariant
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(trial.has_opposite(c))
           m_is_folded.after[trial.edge(c)] =
-            is_folded(trial.after.normals[f], trial.opposite_normal(c), trial.state.caution);
+            is_folded(trial.after.normals[f], trial.opposite_normal(c));
   }
 
   void accept() { m_is_folded.accept(); }

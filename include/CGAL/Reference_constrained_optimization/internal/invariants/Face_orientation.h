@@ -22,7 +22,7 @@ struct Face_orientation : Invariant
   {
     for(const int f : trial.changed)
       m_defects.after[f] =
-        char(is_flipped(trial.mesh(), trial, f, trial.after.normals[f], trial.state.caution) +
+        char(is_flipped(trial.mesh(), trial, f, trial.after.normals[f]) +
              is_nonconvex(trial.mesh(), trial, f));
   }
 

@@ -7,7 +7,6 @@
 
 #include <CGAL/Reference_constrained_optimization/Energy_element.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/numerics/projected_derivatives.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/summands.h>
 
@@ -36,12 +35,13 @@ public:
     Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
 
-  // of the faces that are marked; of all if there are no marks
+  // of the faces that are marked; of all if there are no marks. Lengths of rest triangles are told in
+  // another unit: `unit` of these make one of the mesh.
   template <typename Energy, typename Context>
   Element_set(const Energy& energy,
               const Context& context,
               const std::vector<char>& is_in_range = std::vector<char>(),
-              const Canonical_frame& frame = Canonical_frame())
+              double unit = 1)
   {
     // calls visit(summand, term, weight) for each that has elements and counts
     const auto for_each_term = [&](const auto& visit) {
@@ -72,7 +72,7 @@ public:
         summand.append_elements(context, f, elements);
         for(const Energy_element& e : elements)
           append(e, Criterion_of<std::decay_t<decltype(summand)>>::value, term, weight, context, f,
-                 frame);
+                 unit);
       });
       m_begin.push_back(int(m_elements.size()));
     }
@@ -104,7 +104,7 @@ private:
               double weight,
               const Energy_context& context,
               std::size_t f,
-              const Canonical_frame& frame)
+              double unit)
   {
     const std::string name = " of an element of face " + std::to_string(f);
     const double det = e.rest.determinant();
@@ -120,8 +120,7 @@ private:
                             " names a corner that the face does not have");
       element.vertices[i] = context.vertex(f, e.corners[i]);
     }
-    const Eigen::Matrix2d rest = e.rest.unaryExpr([&](double x) { return frame.length(x); });
-    element.rest_inverse = rest.inverse();
+    element.rest_inverse = (e.rest / unit).inverse();
     element.is_judged = criterion != Element_criterion::none;
     element.is_in_quad = context.degree(f) > 3;
     element.term = term;

@@ -8,7 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/Energy_stencil.h>
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/summands.h>
 
 #include <Eigen/Core>
@@ -61,7 +61,7 @@ class Stencil_function_of : public Stencil_function
 
 public:
   // `step`: a length, of differences, for energies without derivatives
-  Stencil_function_of(const Energy& energy, const Canonical_frame& frame, double step)
+  Stencil_function_of(const Energy& energy, const Frame& frame, double step)
     : m_energy(energy),
       m_frame(frame),
       m_step(step)
@@ -137,7 +137,7 @@ private:
   }
 
   const Energy& m_energy;
-  const Canonical_frame& m_frame;
+  const Frame& m_frame;
   double m_step;
 };
 
@@ -158,7 +158,7 @@ public:
 
   // The energy and the frame have to live as long as this.
   template <typename Energy, typename Context>
-  Stencil_set(const Energy& energy, const Context& context, const Canonical_frame& frame)
+  Stencil_set(const Energy& energy, const Context& context, const Frame& frame)
   {
     for_each_summand(energy, 1, [&](const auto& summand, double weight) {
       typedef std::decay_t<decltype(summand)> Summand;
@@ -236,7 +236,7 @@ private:
   void append(const Energy& energy,
               double weight,
               const Context& context,
-              const Canonical_frame& frame)
+              const Frame& frame)
   {
     constexpr int k = Energy::stencil_size;
     std::vector<Energy_stencil<k>> stencils;

@@ -114,11 +114,10 @@ private:
     for(const int f : m_star)
     {
       const Vector_3 normal = face_normal(mesh, vertex, f);
-      count += is_flipped(mesh, vertex, f, normal, patch.caution) + is_nonconvex(mesh, vertex, f);
+      count += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0)
-          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]),
-                             patch.caution);
+          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]));
     }
     return count;
   }

@@ -22,7 +22,7 @@ inline int boundary_folds(const Optimization_state& state, const Solved_patch& s
   int count = 0;
   for(const std::array<int, 2>& faces : s.boundary)
     count += is_folded(face_normal(state.mesh, vertex, faces[0]),
-                       face_normal(state.mesh, vertex, faces[1]), state.caution);
+                       face_normal(state.mesh, vertex, faces[1]));
   return count;
 }
 

@@ -117,15 +117,14 @@ std::vector<char> defective_faces(const Optimization_state& state)
     for(int f = begin; f < end; ++f)
     {
       normals[f] = face_normal(mesh, vertex, f);
-      result[f] =
-        is_flipped(mesh, vertex, f, normals[f], state.caution) || is_nonconvex(mesh, vertex, f);
+      result[f] = is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f);
     }
   });
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
     for(int f = begin; f < end; ++f)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0 &&
-           is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution))
+           is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]))
           result[f] = 1;
   });
   return result;

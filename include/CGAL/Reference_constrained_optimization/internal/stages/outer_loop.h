@@ -188,10 +188,9 @@ private:
     if(bound > (std::numeric_limits<double>::max)() ||
        (bound < 0 && !m_parameters.use_on_surface_steps))
       return guard;
-    const double smallest = 1e-6 * m_state.reference.mean_edge_length();
-    guard.initialize<ConcurrencyTag>(
-      m_state, bound < 0 ? m_parameters.default_drift_bound : (std::max)(bound, smallest),
-      bound < 0, make_barrier(), &m_interruption);
+    const double edge = m_state.reference.mean_edge_length(), smallest = 1e-6 * edge;
+    guard.initialize<ConcurrencyTag>(m_state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
+                                     bound < 0, make_barrier(), &m_interruption);
     m_result.drift_bound = guard.bound();
     m_result.initial_drift = guard.initial_drift();
     return guard;

@@ -68,9 +68,6 @@ struct Optimization_state
   std::vector<std::array<int, 2>> line_neighbours = {};
   Stencil_set stencils = {};
   std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
-  // A cosine: what comes as close as that to being turned over or folded counts as if it were. Where
-  // coordinates were rounded to a frame this cannot have hidden anything then.
-  double caution = 0;
   // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
   // mesh, whether its turn against R is bounded, and per corner, whether its edge hardly turns on input and
   // must not become sharp; empty if there are none
@@ -125,17 +122,12 @@ double face_volume(const Indexed_mesh& mesh,
 }
 
 template <typename VertexAccess>
-bool is_flipped(const Indexed_mesh& mesh,
-                const VertexAccess& vertex,
-                int f,
-                const Vector_3& normal,
-                double caution)
+bool is_flipped(const Indexed_mesh& mesh, const VertexAccess& vertex, int f, const Vector_3& normal)
 {
   Vector_3 sum = Vector_3::Zero();
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     sum += vertex(mesh.corner_vertex[c]).normal;
-  const double d = normal.dot(sum);
-  return d < 0 || d * d < caution * caution * normal.squaredNorm() * sum.squaredNorm();
+  return normal.dot(sum) < 0;
 }
 
 template <typename VertexAccess>
@@ -154,9 +146,9 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
   return false;
 }
 
-inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution)
+inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
 {
-  return normal_a.dot(normal_b) < (caution - 0.5) * normal_a.norm() * normal_b.norm();
+  return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
 }
 
 // Jacobian of one element on the surface
@@ -261,12 +253,11 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     Global_measure& m = parts[block];
     for(int f = begin; f < end; ++f)
     {
-      m.flips += is_flipped(mesh, vertex, f, normals[f], state.caution);
+      m.flips += is_flipped(mesh, vertex, f, normals[f]);
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] > c)
-          m.fold_edges +=
-            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution);
+          m.fold_edges += is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);

@@ -33,7 +33,6 @@ struct Patch
   std::vector<std::array<int, 2>> line_neighbours;
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
-  double caution = 0; // see Optimization_state
   // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
   std::vector<char> bounds_turn, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
@@ -91,7 +90,6 @@ public:
     ++m_stamp;
     Patch patch;
     patch.faces = faces;
-    patch.caution = state.caution;
     std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
     begins.reserve(faces.size() + 1);
     for(const int f : faces)
