@@ -16,19 +16,19 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What an energy has: elements, stencils, both, or summands.
-template <typename Energy, typename = void>
-struct Has_elements : std::false_type
-{};
-template <typename Energy>
-struct Has_elements<Energy, std::void_t<typename Energy::Density>> : std::true_type
-{};
-
+// What an energy has: elements, stencils, or both.
 template <typename Energy, typename = void>
 struct Has_stencils : std::false_type
 {};
 template <typename Energy>
 struct Has_stencils<Energy, std::void_t<decltype(Energy::stencil_size)>> : std::true_type
+{};
+
+template <typename Energy, typename = void>
+struct Has_elements : std::bool_constant<!Has_stencils<Energy>::value>
+{};
+template <typename Energy>
+struct Has_elements<Energy, std::void_t<typename Energy::Density>> : std::true_type
 {};
 
 // calls visit(energy, weight) for every summand, in order
