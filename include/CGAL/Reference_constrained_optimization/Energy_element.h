@@ -22,8 +22,7 @@ namespace Reference_constrained_optimization {
  *
  * says by what the worst elements of an energy are judged.
  */
-enum class Element_criterion
-{
+enum class Element_criterion {
   none, ///< the sum alone counts.
   /// the smallest angle of a triangle: the mean of the faces' smallest angles does not fall below that of the
   /// input, patches that are flattened are no larger than it takes to open sharp triangles, and a last

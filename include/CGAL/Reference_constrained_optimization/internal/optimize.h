@@ -17,7 +17,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
-#include <CGAL/Reference_constrained_optimization/internal/stages/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/optimize_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
 #include <CGAL/Reference_constrained_optimization/internal/writing/write_back.h>
@@ -125,7 +125,8 @@ void optimize(const FaceRange& range,
     mesh, vpm,
     Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
                    unit * mean_edge_length(copy.mesh, copy.points),
-                   unit * unit * surface_area(copy.mesh, copy.points), unit * unit * surface.area()));
+                   unit * unit * surface_area(copy.mesh, copy.points),
+                   unit * unit * surface.area()));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
   const Element_set elements(energy, context, is_in_range, unit);
   interruption.check();
@@ -187,7 +188,6 @@ void optimize(const FaceRange& range,
   result.times.setup = seconds_since(start);
 
   const auto densities = element_densities(energy);
-  typedef std::decay_t<decltype(densities)> Densities;
   const auto measure_all = [&]() {
     return measure<ConcurrencyTag>(state, densities, std::numeric_limits<double>::infinity());
   };
@@ -239,11 +239,10 @@ void optimize(const FaceRange& range,
   };
   if(result.number_of_free_vertices > 0)
   {
-    Outer_loop<ConcurrencyTag, Densities, Visitor> loop(state, densities, framed_parameters, visitor,
-                                                      result, interruption);
     try
     {
-      loop.run();
+      optimize_state<ConcurrencyTag>(state, densities, framed_parameters, visitor, result,
+                                     interruption);
     }
     catch(...)
     {

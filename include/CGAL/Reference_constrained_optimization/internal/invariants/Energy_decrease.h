@@ -19,8 +19,7 @@ namespace internal {
 // has risen much are to blame.
 struct Energy_decrease : Invariant
 {
-  bool
-  holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
+  bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
     const Patch_measure& before = trial.sums_before;
     if(after.defects() < before.defects() || after.has_fallen_from(before))

@@ -21,9 +21,8 @@ struct Face_orientation : Invariant
   void measure(const Trial& trial)
   {
     for(const int f : trial.changed)
-      m_defects.after[f] =
-        char(is_flipped(trial.mesh(), trial, f, trial.after.normals[f]) +
-             is_nonconvex(trial.mesh(), trial, f));
+      m_defects.after[f] = char(is_flipped(trial.mesh(), trial, f, trial.after.normals[f]) +
+                                is_nonconvex(trial.mesh(), trial, f));
   }
 
   void accept() { m_defects.accept(); }

@@ -24,8 +24,7 @@ struct Mean_angle : Invariant
   void start(const Trial& trial)
   {
     const Optimization_state& state = trial.state;
-    const double share =
-      double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
+    const double share = double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
     m_is_guarded = state.guards_angles;
     m_allowance = share * (std::max)(0., state.angle_surplus);
     m_is_first = true;
@@ -37,8 +36,7 @@ struct Mean_angle : Invariant
     if(!m_is_guarded)
       return;
     for(const int f : trial.changed)
-      m_angles.after[f] =
-        degrees_per_radian * std::acos((std::min)(1., trial.after.cosines[f]));
+      m_angles.after[f] = degrees_per_radian * std::acos((std::min)(1., trial.after.cosines[f]));
     m_sum = 0;
     for(const double angle : m_angles.after)
       m_sum += angle;
@@ -55,8 +53,7 @@ struct Mean_angle : Invariant
   void sum_up(const Trial&, Patch_measure& measure) const { measure.angles = m_sum; }
 
   // the faces whose angles fall are to blame
-  bool
-  holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
+  bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
     const int repaired = trial.sums_before.defects() - after.defects();
     if(!m_is_guarded || m_sum >= m_least - 60. * (std::max)(0, repaired))

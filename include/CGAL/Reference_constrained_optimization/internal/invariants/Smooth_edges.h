@@ -31,8 +31,7 @@ struct Smooth_edges : Invariant
     for(const int f : trial.changed)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(trial.patch.bounds_turn[f] && trial.has_opposite(c))
-          m_cosines.after[trial.edge(c)] =
-            cosine(trial.after.normals[f], trial.opposite_normal(c));
+          m_cosines.after[trial.edge(c)] = cosine(trial.after.normals[f], trial.opposite_normal(c));
   }
 
   void accept() { m_cosines.accept(); }

@@ -50,12 +50,13 @@ struct Patch_quantities
 // Sums over a patch and its boundary, before and after.
 struct Patch_measure
 {
-  double energy = 0;        // of elements and stencils
-  double shared_energy = 0; // of them that of stencils which depend on vertices that others may move
-  double drift_energy = 0;  // what the drift barrier adds
-  double angles = 0;        // sum of the faces' smallest, in degrees, where their mean may not fall
-  double volume = 0;        // six times that of the cones over its faces, where that is bounded
-  int inner_defects = 0;    // inverted faces, quads that are not convex, and folded edges inside
+  double energy = 0; // of elements and stencils
+  double shared_energy =
+    0;                     // of them that of stencils which depend on vertices that others may move
+  double drift_energy = 0; // what the drift barrier adds
+  double angles = 0;       // sum of the faces' smallest, in degrees, where their mean may not fall
+  double volume = 0;       // six times that of the cones over its faces, where that is bounded
+  int inner_defects = 0;   // inverted faces, quads that are not convex, and folded edges inside
   int boundary_defects = 0; // folded edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
   bool has_fallen_from(const Patch_measure& before) const

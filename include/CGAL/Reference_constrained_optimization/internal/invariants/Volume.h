@@ -25,8 +25,7 @@ struct Volume : Invariant
   {
     const Optimization_state& state = trial.state;
     m_volumes.assign(state.guards_volume() ? std::size_t(trial.mesh().number_of_faces()) : 0, 0);
-    const double share =
-      double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
+    const double share = double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
     m_largest_gain = share * (std::max)(0., state.largest_volume_change - state.volume_change);
     m_largest_loss = share * (std::max)(0., state.largest_volume_change + state.volume_change);
     m_apex = trial.placed[0].position;
@@ -39,7 +38,8 @@ struct Volume : Invariant
       return;
     for(const int f : trial.changed)
       if(trial.patch.bounds_turn[f])
-        m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f], trial.patch.placed[0].position);
+        m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f],
+                                         trial.patch.placed[0].position);
   }
 
   void accept()
@@ -69,8 +69,8 @@ struct Volume : Invariant
       Vector_3 normal = Vector_3::Zero();
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         normal += trial.before.normals[mesh.corner_face[mesh.vertex_corners[k]]];
-      swept[v] = (grows ? 1 : -1) *
-                 normal.dot(trial.placed[v].position - trial.patch.placed[v].position);
+      swept[v] =
+        (grows ? 1 : -1) * normal.dot(trial.placed[v].position - trial.patch.placed[v].position);
       if(swept[v] > 0)
       {
         sum += swept[v];

@@ -32,9 +32,8 @@ public:
       m_steepness(steepness)
   {
     for(int term = 0; term < density.number_of_terms(); ++term)
-      density.visit(term, [&](const auto& d) {
-        m_weights.push_back(d.value(Eigen::Matrix2d::Identity()));
-      });
+      density.visit(
+        term, [&](const auto& d) { m_weights.push_back(d.value(Eigen::Matrix2d::Identity())); });
     m_equilateral << 1, 0.5, 0, std::sqrt(0.75);
     const double negligible = 20; // exponent
     m_negligible_cosine =

@@ -24,7 +24,8 @@ template <typename... Density>
 class Element_densities
 {
 public:
-  explicit Element_densities(std::tuple<Density...> densities) : m_densities(std::move(densities)) {}
+  explicit Element_densities(std::tuple<Density...> densities) : m_densities(std::move(densities))
+  {}
 
   double value(const Element_set::Element& element, const Eigen::Matrix2d& J) const
   {
@@ -41,8 +42,7 @@ public:
   {
     double result = 0;
     visit(element.term, [&](const auto& density) {
-      result =
-        element.weight * internal::projected_derivatives(density, J, gradient, hessian, 0);
+      result = element.weight * internal::projected_derivatives(density, J, gradient, hessian, 0);
       gradient *= element.weight;
       hessian *= element.weight;
     });

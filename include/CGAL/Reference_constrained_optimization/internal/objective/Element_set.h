@@ -29,8 +29,8 @@ public:
   {
     std::array<int, 3> vertices;
     bool is_judged;  // by the energy's criterion for elements
-    bool is_in_quad;                                            // its face has more corners than it
-    short term = 0;                                             // the summand of the energy that it is of
+    bool is_in_quad; // its face has more corners than it
+    short term = 0;  // the summand of the energy that it is of
     double weight = 1;
     Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
@@ -77,7 +77,8 @@ public:
       m_begin.push_back(int(m_elements.size()));
     }
     if(m_elements.empty() && is_in_range.empty())
-      throw Invalid_input("energy: the mesh has no element; stencils alone do not keep faces in shape");
+      throw Invalid_input(
+        "energy: the mesh has no element; stencils alone do not keep faces in shape");
   }
 
   // by what the worst elements are judged
@@ -144,10 +145,8 @@ auto element_value(const Density& density,
   return density.value(element, J);
 }
 template <typename Density>
-double element_value(const Density& density,
-                     const Element_set::Element&,
-                     const Eigen::Matrix2d& J,
-                     long)
+double
+element_value(const Density& density, const Element_set::Element&, const Eigen::Matrix2d& J, long)
 {
   return density.value(J);
 }

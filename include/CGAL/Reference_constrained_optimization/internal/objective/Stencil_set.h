@@ -7,8 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/Energy_stencil.h>
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/summands.h>
 
 #include <Eigen/Core>
@@ -147,8 +147,8 @@ class Stencil_set
 public:
   struct Stencil
   {
-    int function;          // of its summand
-    std::size_t number;    // in the summand
+    int function;       // of its summand
+    std::size_t number; // in the summand
     double weight;
     int size;
     std::array<int, largest_stencil> vertices;
@@ -233,10 +233,7 @@ public:
 
 private:
   template <typename Energy, typename Context>
-  void append(const Energy& energy,
-              double weight,
-              const Context& context,
-              const Frame& frame)
+  void append(const Energy& energy, double weight, const Context& context, const Frame& frame)
   {
     constexpr int k = Energy::stencil_size;
     std::vector<Energy_stencil<k>> stencils;
@@ -257,8 +254,8 @@ private:
           throw Invalid_input(name + " names vertex " + std::to_string(s.vertices[j]) +
                               ", which the mesh does not have");
         stencil.vertices[j] = int(s.vertices[j]);
-        if(std::find(stencil.vertices.begin(), stencil.vertices.begin() + j,
-                     stencil.vertices[j]) != stencil.vertices.begin() + j)
+        if(std::find(stencil.vertices.begin(), stencil.vertices.begin() + j, stencil.vertices[j]) !=
+           stencil.vertices.begin() + j)
           throw Invalid_input(name + " names vertex " + std::to_string(s.vertices[j]) + " twice");
       }
       if(stencil.weight > 0)

@@ -100,8 +100,7 @@ public:
   }
 
   template <typename Density>
-  bool
-  propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
+  bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
   {
     return false;
   }

@@ -151,9 +151,8 @@ private:
     linearize(patch, samples, density);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
     m_newton.set_strain_resistance(m_strain_resistance);
-    const Projected_newton::Outcome outcome =
-      m_newton.minimize(m_problem, Patch_elements<Density>{density, patch.elements}, m_motion,
-                        m_newton_steps, 1e-8);
+    const Projected_newton::Outcome outcome = m_newton.minimize(
+      m_problem, Patch_elements<Density>{density, patch.elements}, m_motion, m_newton_steps, 1e-8);
     m_promised = outcome.promised;
     return outcome.steps > 0;
   }

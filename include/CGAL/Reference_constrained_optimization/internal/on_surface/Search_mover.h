@@ -57,8 +57,7 @@ public:
   }
 
   template <typename Density>
-  bool
-  propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
+  bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
   {
     return false;
   }
@@ -385,7 +384,7 @@ private:
   double m_sharp = 1;
   const Patch_samples* m_samples = nullptr;
   std::vector<Placed_vertex> m_placed;
-  std::vector<std::vector<int>> m_guests;           // per polygon
+  std::vector<std::vector<int>> m_guests; // per polygon
   // around the vertices that move: faces, triangles, and stencils of the patch
   std::vector<int> m_star, m_triangles, m_star_stencils;
   std::vector<Placed_vertex> m_here, m_best_places; // of these

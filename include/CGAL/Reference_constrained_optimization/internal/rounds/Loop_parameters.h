@@ -20,7 +20,7 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 100;
-  double drift_bound = -1; // a length; negative: see Outer_loop::make_drift_guard
+  double drift_bound = -1; // a length; negative: see Patch_visits::make_drift_guard
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 4e-3;
   // Part of the mean edge length at a vertex: where all around move less it is calm. Small ways of many

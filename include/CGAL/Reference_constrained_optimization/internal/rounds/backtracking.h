@@ -50,9 +50,9 @@ public:
   // bounds on single elements, which change between iterations
   struct Limits
   {
-    double density = 0;         // no step may take an element beyond it, or further beyond
-    double cosine = 1;          // no step may take that of an angle beyond it, or further beyond
-    bool accepts_all = false;   // what the mover proposes is kept without a test
+    double density = 0;       // no step may take an element beyond it, or further beyond
+    double cosine = 1;        // no step may take that of an angle beyond it, or further beyond
+    bool accepts_all = false; // what the mover proposes is kept without a test
   };
 
   struct Decision
@@ -74,7 +74,7 @@ public:
   {
     Decision decision;
     Violating_vertices violating(patch);
-    const Trial trial{patch,   state,     m_candidate,       samples,   m_before,
+    const Trial trial{patch,   state,      m_candidate,       samples,   m_before,
                       m_after, m_accepted, m_outside_normals, m_changed, m_is_changed};
     std::get<Largest_density>(m_local).limit = limits.density;
     std::get<Smallest_angle>(m_local).largest_cosine = limits.cosine;
@@ -255,9 +255,9 @@ private:
   std::vector<Vector_3> m_outside_normals; // per corner
   Patch_quantities m_before, m_after;
   Patch_measure m_accepted;
-  std::vector<int> m_changed;              // faces to be measured
-  std::vector<char> m_is_changed;          // per face
-  std::vector<int> m_violations, m_rings;  // per vertex
+  std::vector<int> m_changed;             // faces to be measured
+  std::vector<char> m_is_changed;         // per face
+  std::vector<int> m_violations, m_rings; // per vertex
 };
 
 } // namespace internal

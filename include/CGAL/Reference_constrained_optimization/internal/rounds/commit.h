@@ -59,10 +59,9 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
   const int change =
     after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
   // what is not shared has changed as the patch was judged
-  const double rise =
-    s.shared_stencils.empty() ? 0
-                              : shared_energy(state, s) - shared_before -
-                                  (after.shared_energy - before.shared_energy);
+  const double rise = s.shared_stencils.empty() ? 0
+                                                : shared_energy(state, s) - shared_before -
+                                                    (after.shared_energy - before.shared_energy);
   const bool is_better = change < 0 || (change == 0 && after.energy + rise < before.energy);
   if(!is_better && !s.decision.is_final)
   {

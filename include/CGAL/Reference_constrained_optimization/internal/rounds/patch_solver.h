@@ -32,7 +32,7 @@ enum class Moves { flattened, on_surface, by_search, opening };
 struct Solver_settings
 {
   Backtracking::Limits limits;
-  double bad_density = 0;                                              // of an element beyond it
+  double bad_density = 0;                                          // of an element beyond it
   double search_density = std::numeric_limits<double>::infinity(); // elements beyond it, or with
   double search_cosine = 1;     // the cosine of an angle beyond it, are what a search is for
   double strain_resistance = 0; // where Newton steps on the surface begin
@@ -46,7 +46,7 @@ struct Solved_patch
   std::vector<Patch_samples::Guest> guests;
   Drift_guard::Known_samples samples;
   std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
-  std::vector<int> shared_stencils; // that depend on vertices which others may move
+  std::vector<int> shared_stencils;         // that depend on vertices which others may move
   // the free vertices, in local indices: those that other patches see, and the others
   std::vector<int> outer_vertices, inner_vertices;
   Backtracking::Decision decision;
@@ -121,7 +121,8 @@ public:
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
-      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, settings, samples, s);
+      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, settings,
+              samples, s);
       s.path = m_flattened_mover.flattening().path;
       s.overlaps = m_flattened_mover.overlaps();
       s.distortion = m_flattened_mover.flattening().distortion;
@@ -216,8 +217,8 @@ private:
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
       // a few elements that nothing can open may own the sum
-      const double scale =
-        (std::min)(std::abs(decision.before.energy), settings.bad_density * double(s.patch.elements.size()));
+      const double scale = (std::min)(std::abs(decision.before.energy),
+                                      settings.bad_density * double(s.patch.elements.size()));
       proposes = decision.accepted && gain >= tolerance * scale && pass + 1 < maximum_proposals &&
                  mover.propose_again(s.patch, samples, m_backtracking.steps(), density);
     }

@@ -42,8 +42,9 @@ public:
       m_densities(densities)
   {
     for(int term = 0; term < densities.number_of_terms(); ++term)
-      densities.visit(
-        term, [&](const auto& d) { m_target_factor = (std::max)(m_target_factor, exponent_factor(d)); });
+      densities.visit(term, [&](const auto& d) {
+        m_target_factor = (std::max)(m_target_factor, exponent_factor(d));
+      });
     m_factor = (std::min)(mildest, m_target_factor);
     m_densities = milder(m_factor);
   }
@@ -59,7 +60,8 @@ public:
   {
     const double step = std::sqrt(10.);
     const double rounding = 1e-9;
-    const double steepest = (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target_factor;
+    const double steepest =
+      (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target_factor;
     bool advances = false;
     while(m_factor < steepest)
     {

@@ -6,13 +6,16 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_FINISHING_STAGE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Angle_barrier_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
-#include <CGAL/Reference_constrained_optimization/internal/stages/worst_faces.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/Angle_statistics.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/Worst_faces_stage.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/saved_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -26,10 +29,11 @@ namespace internal {
 // smallest angle, by less where that does not follow. A face that lags behind is given wider
 // surroundings first, up to a few rings: most need none. The best state is kept. Effort is bounded by what
 // it gains: passes live on credit.
-template <typename ConcurrencyTag>
+template <typename Visits>
 class Finishing_stage
 {
-public:
+  typedef typename Visits::ConcurrencyTag ConcurrencyTag;
+
   struct Goal
   {
     double target;    // of the barrier, in degrees
@@ -44,43 +48,63 @@ public:
     std::vector<char> is_in; // per face of the mesh
   };
 
-  // `energy(f)` is that of a face; their sum and that of stencils may rise, but not beyond `largest_energy`.
-  Finishing_stage(const Optimization_state& state,
-                  std::function<double(int)> energy,
-                  double largest_energy,
-                  Interruption* interruption = nullptr)
-    : m_state(state),
-      m_interruption(interruption),
-      m_face_energy(std::move(energy)),
-      m_largest_energy(largest_energy)
+public:
+  explicit Finishing_stage(Visits& visits)
+    : m_visits(visits),
+      m_state(visits.state),
+      m_interruption(&visits.interruption),
+      m_saved(visits.state, visits.round_solver.drift_guard()),
+      m_faces(visits.state, visits.target_densities)
   {}
 
-  // `visit(faces, goal, searches)` optimizes these faces; false if it was cut short. `save()`
-  // and `restore()` keep a state to which the stage returns.
-  template <typename Visit, typename Save, typename Restore>
-  void run(const Visit& visit, const Save& save, const Restore& restore)
+  // The mean energy may rise on the way, but not beyond that on input. If it is interrupted the mesh
+  // returns to what was saved last.
+  void run()
   {
-    measure_all();
-    const double first_mean = mean(), largest_loss = 0.2;
+    m_visits.round_solver.set_finishing(true);
+    m_visits.interruption.check();
+    m_visits.settings.limits.density = m_visits.settings.search_density =
+      std::numeric_limits<double>::infinity();
+    try
+    {
+      if(raise_minimum())
+        polish();
+    }
+    catch(...)
+    {
+      m_saved.restore();
+      throw;
+    }
+    m_visits.round_solver.set_finishing(false);
+  }
+
+private:
+  // false if it was cut short
+  bool raise_minimum()
+  {
+    m_faces.template measure_all<ConcurrencyTag>();
+    m_rings.assign(m_faces.angles().size(), 1);
+    const double first_mean = m_faces.mean(), largest_loss = 0.2;
     const double largest_step = 2, equilateral = 60; // degrees
     double step = largest_step;
-    const double first_minimum = m_minimum;
-    double best = m_minimum;
+    const double first_minimum = m_faces.minimum();
+    double best = m_faces.minimum();
     const int maximum_passes = 100;
     bool goes_on = true;
     m_credit = largest_credit;
-    m_left.assign(m_angles.size(), Left());
-    save();
+    m_left.assign(m_faces.angles().size(), Left());
+    m_saved.forget();
     for(int pass = 0; goes_on && m_credit > 0 && pass < maximum_passes; ++pass)
     {
-      if(step < smallest_step || m_minimum > equilateral - smallest_step)
+      if(step < smallest_step || m_faces.minimum() > equilateral - smallest_step)
         break;
-      const auto lowest = std::min_element(m_angles.begin(), m_angles.end()) - m_angles.begin();
-      if(!can_rise(int(lowest)))
+      const auto lowest = std::min_element(m_faces.angles().begin(), m_faces.angles().end()) -
+                          m_faces.angles().begin();
+      if(!m_faces.can_rise(int(lowest)))
         break;
-      const double minimum = m_minimum, mean_before = mean();
+      const double minimum = m_faces.minimum(), mean_before = m_faces.mean();
       // far beyond what the sharpest can reach the barrier would only harm those around it
-      const double feasible = bound(int(lowest)) + 0.2;
+      const double feasible = m_faces.bound(int(lowest)) + 0.2;
       const double target = (std::min)({minimum + step, feasible, equilateral});
       const double ahead = target - minimum;
       const double lagging = minimum + 0.2 * ahead, enough = minimum + 0.3 * ahead;
@@ -89,82 +113,82 @@ public:
       // The closer the target, the steeper: the angles of a star that is at its limit are then evened out.
       const double steepness = (std::min)(steepest, (std::max)(flattest, 12 / ahead));
       const Goal goal{target, steepness, cosine(lent), cosine(lagging)};
-      goes_on = visit_below(target, goal, false, visit);
-      if(goes_on && m_minimum < lagging)
-        goes_on = search_below(lagging, goal, visit);
-      const double price = 0.02 + 0.05 * (m_minimum - minimum);
-      const bool holds = mean() > first_mean - largest_loss && mean() > mean_before - price &&
-                         energy() <= m_largest_energy;
+      goes_on = visit_below(target, goal, false);
+      if(goes_on && m_faces.minimum() < lagging)
+        goes_on = search_below(lagging, goal);
+      const double price = 0.02 + 0.05 * (m_faces.minimum() - minimum);
+      const bool holds = m_faces.mean() > first_mean - largest_loss &&
+                         m_faces.mean() > mean_before - price &&
+                         m_faces.energy() <= m_visits.initial_energy;
       if(!holds)
       {
-        restore();
+        m_saved.restore();
         measure_touched();
         step *= 0.25;
       }
       else
       {
-        const double gain = (std::max)(0., m_minimum - best) + (std::max)(0., mean() - mean_before);
+        const double gain =
+          (std::max)(0., m_faces.minimum() - best) + (std::max)(0., m_faces.mean() - mean_before);
         m_credit = (std::min)(largest_credit, m_credit + worth * gain);
-        if(m_minimum > best)
+        if(m_faces.minimum() > best)
         {
-          save();
+          m_saved.forget();
           m_touched.clear();
-          best = m_minimum;
+          best = m_faces.minimum();
         }
-        if(m_minimum > minimum + 0.8 * ahead)
+        if(m_faces.minimum() > minimum + 0.8 * ahead)
           step = (std::min)(largest_step, 2 * step);
-        else if(m_minimum < enough)
+        else if(m_faces.minimum() < enough)
         {
           const bool widens = widen(enough);
-          if(!widens || m_minimum <= minimum)
+          if(!widens || m_faces.minimum() <= minimum)
             step = (widens ? 0.8 : 0.25) * ahead;
         }
       }
     }
-    if(m_minimum < best)
+    if(m_faces.minimum() < best)
     {
-      restore();
+      m_saved.restore();
       measure_touched();
     }
-    if(goes_on)
-      polish(visit, save, restore);
+    return goes_on;
   }
 
-private:
-  static constexpr double smallest_step = 0.03, negligible = 0.01; // degrees
-  static constexpr double flattest = 6, steepest = 30;             // per degree
+  static constexpr double smallest_step = 0.03;        // degrees
+  static constexpr double flattest = 6, steepest = 30; // per degree
   // in visits to as many faces as the mesh has: what passes may cost before they gain, and what a degree
   // of the minimum or of the mean is worth
   static constexpr double largest_credit = 8, worth = 16;
 
   // Wins back what the mean lost on the way, and more, while the minimum is only held: small patches
   // gain a little everywhere where the large ones before the stage have come to rest.
-  template <typename Visit, typename Save, typename Restore>
-  void polish(const Visit& visit, const Save& save, const Restore& restore)
+  void polish()
   {
     const int maximum_passes = 4;
     const double enough = 0.002, calm = 0.1; // degrees: of the mean, and of an angle
-    std::vector<char> is_wanted(m_angles.size());
+    std::vector<char> is_wanted(m_faces.angles().size());
     for(std::size_t f = 0; f < is_wanted.size(); ++f)
-      is_wanted[f] = m_angles[f] < 180;
+      is_wanted[f] = m_faces.angles()[f] < 180;
     for(int pass = 0; pass < maximum_passes; ++pass)
     {
-      const double minimum = m_minimum, mean_before = mean();
-      const std::vector<double> before = m_angles;
-      save();
+      const double minimum = m_faces.minimum(), mean_before = m_faces.mean();
+      const std::vector<double> before = m_faces.angles();
+      m_saved.forget();
       m_touched.clear();
       want(is_wanted);
       const Goal goal{minimum, flattest, cosine(minimum), cosine(minimum)};
-      const bool goes_on = visit_wanted(goal, false, visit);
-      if(m_minimum < minimum || mean() < mean_before || energy() > m_largest_energy)
+      const bool goes_on = visit_wanted(goal, false);
+      if(m_faces.minimum() < minimum || m_faces.mean() < mean_before ||
+         m_faces.energy() > m_visits.initial_energy)
       {
-        restore();
+        m_saved.restore();
         return;
       }
-      if(!goes_on || mean() < mean_before + enough)
+      if(!goes_on || m_faces.mean() < mean_before + enough)
         return;
       for(std::size_t f = 0; f < before.size(); ++f)
-        is_wanted[f] = std::abs(m_angles[f] - before[f]) > calm;
+        is_wanted[f] = std::abs(m_faces.angles()[f] - before[f]) > calm;
       is_wanted = faces_around<ConcurrencyTag>(
         m_state.mesh, vertices_of<ConcurrencyTag>(m_state.mesh, is_wanted), 1);
     }
@@ -188,51 +212,55 @@ private:
         m_wanted.list.push_back(int(f));
   }
 
-  template <typename Visit>
-  bool visit_below(double angle, const Goal& goal, bool searches, const Visit& visit)
+  bool visit_below(double angle, const Goal& goal, bool searches)
   {
     find_below(angle);
-    return visit_wanted(goal, searches, visit);
+    return visit_wanted(goal, searches);
   }
 
   // Searches around the faces with an angle below the given one, if they are few: around those that are
   // below what many have. What a search has left, the next one with the same surroundings would leave, too.
-  template <typename Visit>
-  bool search_below(double angle, Goal goal, const Visit& visit)
+  bool search_below(double angle, Goal goal)
   {
     const int useful_rings = 3; // it moves the vertices of a face and those around them
     const std::size_t most = number_of_exceptions(m_state.mesh);
     std::vector<double> low;
-    for(std::size_t f = 0; f < m_angles.size(); ++f)
-      if(m_angles[f] < angle && can_rise(int(f)))
-        low.push_back(m_angles[f]);
+    for(std::size_t f = 0; f < m_faces.angles().size(); ++f)
+      if(m_faces.angles()[f] < angle && m_faces.can_rise(int(f)))
+        low.push_back(m_faces.angles()[f]);
     if(low.size() > most)
     {
       std::nth_element(low.begin(), low.begin() + most, low.end());
-      angle = low[most] - negligible;
+      angle = low[most] - m_faces.negligible;
       goal.searched = cosine(angle);
     }
     const auto is_left = [&](int f) {
       return m_left[f].rings >= (std::min)(useful_rings, int(m_rings[f])) &&
-             std::abs(m_left[f].angle - m_angles[f]) < negligible;
+             std::abs(m_left[f].angle - m_faces.angles()[f]) < m_faces.negligible;
     };
     find_below(angle);
     if(std::all_of(m_low.begin(), m_low.end(), is_left))
       return true;
-    m_credit -= cost_of_search * double(m_low.size()) / m_number_of_faces;
-    const bool goes_on = visit_wanted(goal, true, visit);
+    m_credit -= cost_of_search * double(m_low.size()) / m_faces.number_of_faces();
+    const bool goes_on = visit_wanted(goal, true);
     for(const int f : m_low)
-      m_left[f] = {m_angles[f], int(m_rings[f])};
+      m_left[f] = {m_faces.angles()[f], int(m_rings[f])};
     return goes_on;
   }
 
-  template <typename Visit>
-  bool visit_wanted(const Goal& goal, bool searches, const Visit& visit)
+  bool visit_wanted(const Goal& goal, bool searches)
   {
-    m_credit -= double(m_wanted.list.size()) / m_number_of_faces;
-    const bool goes_on = visit(m_wanted, goal, searches);
+    m_credit -= double(m_wanted.list.size()) / m_faces.number_of_faces();
+    m_saved.add(m_wanted.list);
+    m_visits.update_sums();
+    m_visits.settings.limits.cosine = goal.sharpest;
+    m_visits.settings.search_cosine = goal.searched;
+    const bool goes_on =
+      m_visits.visit_regions(m_wanted.is_in, searches ? Moves::by_search : Moves::on_surface,
+                             Angle_barrier_density<typename Visits::Densities>(
+                               m_visits.densities(), goal.target, goal.steepness));
     m_touched.insert(m_touched.end(), m_wanted.list.begin(), m_wanted.list.end());
-    measure(m_wanted.list);
+    m_faces.measure(m_wanted.list);
     return goes_on;
   }
 
@@ -241,7 +269,7 @@ private:
   {
     const Indexed_mesh& mesh = m_state.mesh;
     m_wanted.list.clear();
-    m_wanted.is_in.assign(m_angles.size(), 0);
+    m_wanted.is_in.assign(m_faces.angles().size(), 0);
     const auto add = [&](int f) {
       if(!m_wanted.is_in[f])
       {
@@ -251,10 +279,10 @@ private:
     };
     m_low.clear();
     int rings = 0;
-    for(std::size_t f = 0; f < m_angles.size(); ++f)
+    for(std::size_t f = 0; f < m_faces.angles().size(); ++f)
     {
       check_now_and_then(m_interruption, int(f));
-      if(m_angles[f] < angle && can_rise(int(f)))
+      if(m_faces.angles()[f] < angle && m_faces.can_rise(int(f)))
       {
         m_low.push_back(int(f));
         rings = (std::max)(rings, int(m_rings[f]));
@@ -282,8 +310,8 @@ private:
   {
     const int most = 8; // it is for a few faces only
     bool widens = false;
-    for(std::size_t f = 0; f < m_angles.size(); ++f)
-      if(m_angles[f] < angle && m_rings[f] < most)
+    for(std::size_t f = 0; f < m_faces.angles().size(); ++f)
+      if(m_faces.angles()[f] < angle && m_rings[f] < most)
       {
         ++m_rings[f];
         widens = true;
@@ -291,98 +319,20 @@ private:
     return widens;
   }
 
-  // A vertex bounds the smallest angle of the faces around it, as long as the sum of the angles there
-  // stays: the least of these is their mean at most, and the largest, the mean at least, leaves no more
-  // for the other two of its face.
-  double bound(int f) const
-  {
-    const Indexed_mesh& mesh = m_state.mesh;
-    const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
-    double least = 60;
-    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      least = (std::min)(least, shared_angle(mesh, position, mesh.corner_vertex[c]));
-    return least;
-  }
-
-  bool can_rise(int f) const { return m_angles[f] <= bound(f) - negligible; }
-
   static double cosine(double degrees) { return std::cos(degrees / degrees_per_radian); }
-  double mean() const { return m_sum / m_number_of_faces; }
-  double energy() const { return m_energy + energy_of_stencils(m_state); }
 
-  // of a face
-  double smallest_angle(int f) const
-  {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
-    if(m_state.elements.begin(f) == m_state.elements.end(f))
-      return 180; // it is none of the stage's
-    return degrees_per_radian *
-           std::acos((std::min)(1., smallest_angle_cosine(m_state.mesh, vertex, f)));
-  }
-
-  void measure_all()
-  {
-    const Indexed_mesh& mesh = m_state.mesh;
-    const int n = mesh.number_of_faces();
-    m_angles.assign(n, 0);
-    m_rings.assign(n, 1);
-    std::vector<double> angles(n);
-    m_number_of_faces = 0;
-    for(int f = 0; f < n; ++f)
-      m_number_of_faces += m_state.counts(f);
-    m_energies.resize(n);
-    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
-      for(int f = begin; f < end; ++f)
-      {
-        angles[f] = m_state.counts(f) ? smallest_angle(f) : 0;
-        m_energies[f] = m_face_energy(f);
-        bool may_change = false;
-        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-          may_change = may_change || m_state.is_free[mesh.corner_vertex[c]];
-        m_angles[f] = may_change ? angles[f] : 180;
-      }
-    });
-    m_sum = 0;
-    for(const double angle : angles)
-      m_sum += angle;
-    m_energy = 0;
-    for(const double energy : m_energies)
-      m_energy += energy;
-    m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
-  }
-
-  // again, where the mesh may have changed
-  void measure(const std::vector<int>& faces)
-  {
-    for(const int f : faces)
-      if(m_angles[f] < 180)
-      {
-        const double angle = smallest_angle(f);
-        m_sum += angle - m_angles[f];
-        m_angles[f] = angle;
-        const double energy = m_face_energy(f);
-        m_energy += energy - m_energies[f];
-        m_energies[f] = energy;
-      }
-    m_minimum = *std::min_element(m_angles.begin(), m_angles.end());
-  }
   void measure_touched()
   {
-    measure(m_touched);
+    m_faces.measure(m_touched);
     m_touched.clear();
   }
 
+  Visits& m_visits;
   const Optimization_state& m_state;
   Interruption* m_interruption;
-  const std::function<double(int)> m_face_energy;
-  const double m_largest_energy;
-  std::vector<double> m_angles; // per face: its smallest; 180 if none of its vertices may move
+  Saved_state m_saved;
+  Angle_statistics<typename Visits::Densities> m_faces;
   std::vector<unsigned char> m_rings; // per face: what surroundings it needs
-  std::vector<double> m_energies;     // per face
-  double m_number_of_faces = 0;       // that are to be optimized
-  double m_energy = 0;                // of all
-  double m_minimum = 0;               // of all faces that may change
-  double m_sum = 0;                   // of all
   double m_credit = 0;
   std::vector<Left> m_left; // per face
   Faces m_wanted;
