@@ -5,11 +5,14 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
 
+#include <CGAL/Reference_constrained_optimization/Attraction_energy.h>
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/Sum_energy.h>
 #include <CGAL/Reference_constrained_optimization/detect_features.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>

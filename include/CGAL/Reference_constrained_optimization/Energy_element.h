@@ -24,9 +24,9 @@ namespace Reference_constrained_optimization {
  */
 enum class Element_criterion {
   none, ///< the sum alone counts.
-  /// the smallest angle of a triangle: the mean of the faces' smallest angles does not fall below that of the
-  /// input, patches that are flattened are no larger than it takes to open sharp triangles, and a last
-  /// stage raises the smallest angle of the mesh (`use_finishing_stage`).
+  /// the smallest angle of a triangle: patches that are flattened are no larger than it takes to open sharp
+  /// triangles, a last stage raises the smallest angle of the mesh (`use_finishing_stage`), and, unless the
+  /// energy has stencils, too, the mean of the faces' smallest angles does not fall below that of the input.
   smallest_angle
 };
 

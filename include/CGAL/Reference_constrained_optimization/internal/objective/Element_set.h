@@ -55,7 +55,7 @@ public:
         }
       });
     };
-    m_criterion = Criterion_of<Energy>::value;
+    m_criterion = criterion_of(energy);
     const std::size_t n = context.number_of_faces();
     m_begin.reserve(n + 1);
     m_begin.push_back(0);

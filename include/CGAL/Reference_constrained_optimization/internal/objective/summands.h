@@ -59,14 +59,18 @@ struct Criterion_of<Energy, std::void_t<decltype(Energy::element_criterion)>>
 {
   static constexpr Element_criterion value = Energy::element_criterion;
 };
-template <typename... Energy>
-struct Criterion_of<Sum_energy<Energy...>, void>
+// of a sum: that of a summand that counts
+template <typename Energy>
+Element_criterion criterion_of(const Energy& energy)
 {
-  static constexpr Element_criterion value =
-    ((Criterion_of<Energy>::value == Element_criterion::smallest_angle) || ...)
-      ? Element_criterion::smallest_angle
-      : Element_criterion::none;
-};
+  Element_criterion result = Element_criterion::none;
+  for_each_summand(energy, 1, [&](const auto& summand, double weight) {
+    const Element_criterion criterion = Criterion_of<std::decay_t<decltype(summand)>>::value;
+    if(weight > 0 && criterion != Element_criterion::none)
+      result = criterion;
+  });
+  return result;
+}
 
 } // namespace internal
 } // namespace Reference_constrained_optimization

@@ -52,7 +52,8 @@ public:
       m_visits.visitor.on_iteration_end(i, energy / double(m_state.elements.size()));
       if(!complete)
         return false;
-      settings.limits.density = (std::min)(settings.limits.density, after.worst);
+      if(m_state.stencils.empty())
+        settings.limits.density = (std::min)(settings.limits.density, after.worst);
       const auto& progress = m_visits.round_solver.progress();
       if(progress.could_move > 0)
         settings.strain_resistance =

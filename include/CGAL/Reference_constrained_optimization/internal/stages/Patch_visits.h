@@ -72,9 +72,10 @@ public:
   {
     m_exponent.template advance<ConcurrencyTag>(state);
     const Global_measure before = rescale();
-    settings.limits.cosine = before.sharpest;
+    if(state.stencils.empty())
+      settings.limits.cosine = before.sharpest;
     initial_energy = target_energy();
-    state.guards_angles = judges_angles;
+    state.guards_angles = judges_angles && state.stencils.empty();
     m_initial_angles = sum_of_angles();
     m_initial_volume = volume_of_parts(state);
     interruption.check();
@@ -207,7 +208,9 @@ private:
     m_cap = 10 * typical;
     m_rest_energy = internal::rest_energy(state, densities());
     const Global_measure now = measure();
-    settings.limits.density = now.worst;
+    // what stencils ask for is paid with the shape of elements
+    settings.limits.density =
+      state.stencils.empty() ? now.worst : std::numeric_limits<double>::infinity();
     settings.bad_density = 1.5 * typical;
     return now;
   }

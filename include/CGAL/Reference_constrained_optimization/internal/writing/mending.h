@@ -48,7 +48,7 @@ Flaws find_flaws(const Optimization_state& state, const std::vector<Placed_verte
       normals[f] = face_normal(mesh, vertex, f);
       flaws.is_turned[f] =
         char(is_flipped(mesh, vertex, f, normals[f]) + is_nonconvex(mesh, vertex, f));
-      if(mesh.degree(f) == 3 && state.counts(f))
+      if(mesh.degree(f) == 3 && state.counts(f) && state.stencils.empty())
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
           flaws.angles[f] = (std::min)(flaws.angles[f], corner_angle(mesh, position, c));
     }
