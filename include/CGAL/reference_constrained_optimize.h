@@ -145,7 +145,7 @@ namespace CGAL {
  *                           less than this part of what it has above the energy of elements that
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without; it ends there, or, for
- *                           energies that prize angles, once starting again with larger patches has
+ *                           energies that judge elements by their angles, once starting again with larger patches has
  *                           gained less, too}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`4e-3`}
@@ -155,7 +155,7 @@ namespace CGAL {
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
  *                       number of triangles, between 400 and 4000, but 1.2 times, 150 at least, for
- *                       energies that prize angles unless `use_on_surface_steps` is `false`; the
+ *                       energies that judge elements by their angles unless `use_on_surface_steps` is `false`; the
  *                       others hold an eighth of the mesh, between 4000 and 20000 triangles, a quarter
  *                       of that (again and again, 1000 at least) once they are held up, and four
  *                       times as much where iterations start again; a quad counts as two triangles}

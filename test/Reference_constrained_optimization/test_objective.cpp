@@ -90,8 +90,9 @@ void test_attraction()
   const Vector_3 off = Vector_3(0.05, 0.03, 1).normalized();
   const RCO::Attraction_energy attraction({{std::size_t(pole), 1.5 * off}});
   RCO::Result result;
-  const Shape moved = optimized(sphere, sphere, RCO::sum(1, RCO::Minimum_angle_energy(), 1e5, attraction),
-                                params::energy_tolerance(1e-6), &result);
+  const Shape moved =
+    optimized(sphere, sphere, RCO::sum(1, RCO::Minimum_angle_energy(), 1e5, attraction),
+              params::energy_tolerance(1e-6), &result);
   const internal::Reference_surface surface(copy_of(sphere));
   const Vector_3 closest = surface.closest(1.5 * off).position;
   RCO_CHECK_LESS(0.04, (sphere.points[pole] - closest).norm());

@@ -241,8 +241,8 @@ void optimize(const FaceRange& range,
   {
     try
     {
-      optimize_state<ConcurrencyTag>(state, densities, framed_parameters, visitor, result,
-                                     interruption);
+      optimize_state<ConcurrencyTag>(state, densities, initial.energy, framed_parameters, visitor,
+                                     result, interruption);
     }
     catch(...)
     {

@@ -42,7 +42,6 @@ public:
     Flattening_parameters flattening;
     bool use_surface_metric = true;
     int newton_steps = 3; // per proposal
-    bool check_overlap = true;
   };
 
   Flattened_mover(const Reference_surface& reference,
@@ -65,8 +64,7 @@ public:
       m_points.push_back(p.position);
     m_flattening = m_flattener.flatten(triangles, m_points, m_parameters.flattening);
     const bool is_flat = m_flattening.path != Flattening_path::failed;
-    m_overlaps = is_flat && m_parameters.check_overlap &&
-                 !has_simple_border(triangles, m_flattening.positions);
+    m_overlaps = is_flat && !has_simple_border(triangles, m_flattening.positions);
     m_flattening_time = seconds_since(start);
     m_optimization_time = 0;
     if(!is_flat)

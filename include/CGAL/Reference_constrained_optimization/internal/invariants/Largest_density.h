@@ -17,7 +17,7 @@ namespace internal {
 // No element gets beyond the largest density that the mesh had, or further beyond.
 struct Largest_density : Invariant
 {
-  double limit = 0;
+  void set(const Step_limits& limits) { m_limit = limits.density; }
 
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
@@ -25,7 +25,7 @@ struct Largest_density : Invariant
     for(std::size_t e = 0; e < trial.patch.elements.size(); ++e)
     {
       const double density = trial.after.densities[e];
-      if(density > limit && density > trial.before.densities[e])
+      if(density > m_limit && density > trial.before.densities[e])
       {
         holds = false;
         violating.add_element(e);
@@ -33,6 +33,9 @@ struct Largest_density : Invariant
     }
     return holds;
   }
+
+private:
+  double m_limit = 0;
 };
 
 } // namespace internal

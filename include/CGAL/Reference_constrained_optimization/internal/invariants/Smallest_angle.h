@@ -15,7 +15,7 @@ namespace internal {
 // No angle of a triangle falls below the smallest that the mesh had, or further below.
 struct Smallest_angle : Invariant
 {
-  double largest_cosine = 1;
+  void set(const Step_limits& limits) { m_largest_cosine = limits.cosine; }
 
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
@@ -23,7 +23,7 @@ struct Smallest_angle : Invariant
     for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
     {
       const double cosine = trial.after.cosines[f];
-      if(cosine > largest_cosine && cosine > trial.before.cosines[f])
+      if(cosine > m_largest_cosine && cosine > trial.before.cosines[f])
       {
         holds = false;
         violating.add_face(f);
@@ -31,6 +31,9 @@ struct Smallest_angle : Invariant
     }
     return holds;
   }
+
+private:
+  double m_largest_cosine = 1;
 };
 
 } // namespace internal

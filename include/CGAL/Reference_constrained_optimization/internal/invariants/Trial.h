@@ -109,6 +109,14 @@ struct Compared
   bool has_risen(std::size_t i) const { return after[i] > before[i]; }
 };
 
+// Bounds on single elements, which change between iterations.
+struct Step_limits
+{
+  double density = 0;       // no step may take an element beyond it, or further beyond
+  double cosine = 1;        // no step may take that of an angle beyond it, or further beyond
+  bool accepts_all = false; // what the mover proposes is kept without a test
+};
+
 // An invariant is a rule that every accepted step obeys. It derives from this class and has
 //   bool holds(const Trial&, Violating_vertices&) const;
 // or, if it is a rule for the sums over a patch,
@@ -117,6 +125,7 @@ struct Compared
 // on the faces that changed.
 struct Invariant
 {
+  void set(const Step_limits&) {}                    // before a decision
   void start(const Trial&) {}                        // of a new patch, of which nothing is measured
   void measure(const Trial&) {}                      // the faces that changed, as they are now
   void accept() {}                                   // what was measured last is what was before

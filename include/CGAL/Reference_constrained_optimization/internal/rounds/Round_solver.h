@@ -44,7 +44,6 @@ public:
                Result& result,
                Interruption& interruption)
     : m_state(state),
-      m_movement_tolerance(parameters.movement_tolerance),
       m_visitor(visitor),
       m_result(result),
       m_interruption(interruption),
@@ -112,6 +111,10 @@ public:
   }
 
 private:
+  // Part of the mean edge length at a vertex: where all around move less it is at rest. Small ways of many
+  // together may lead far, which is why two rings are looked at.
+  static constexpr double movement_tolerance = 0.02;
+
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
   // vertices
   void update(const Solved_patch& s)
@@ -122,7 +125,7 @@ private:
       {
         const int v = patch.vertices[i];
         const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
-        if(moved > m_movement_tolerance * m_edge_length[v])
+        if(moved > movement_tolerance * m_edge_length[v])
           m_progress.moved[v] = 1;
       }
     for(const int f : patch.faces)
@@ -172,7 +175,6 @@ private:
   }
 
   Optimization_state& m_state;
-  double m_movement_tolerance;
   Visitor& m_visitor;
   Result& m_result;
   Interruption& m_interruption;

@@ -42,18 +42,11 @@ typedef std::tuple<Volume, Mean_angle, Energy_decrease> Sum_invariants;
 // Decides on what a mover proposes: first defects, then energy, all measured on R. Where an invariant does
 // not hold the step is cut back, first at the vertices that are to blame, then everywhere; only what a cut
 // changes is measured again.
-class Backtracking
+template <typename Local, typename Sums>
+class Backtracking_with
 {
 public:
-  explicit Backtracking(Interruption* interruption = nullptr) : m_interruption(interruption) {}
-
-  // bounds on single elements, which change between iterations
-  struct Limits
-  {
-    double density = 0;       // no step may take an element beyond it, or further beyond
-    double cosine = 1;        // no step may take that of an angle beyond it, or further beyond
-    bool accepts_all = false; // what the mover proposes is kept without a test
-  };
+  explicit Backtracking_with(Interruption* interruption = nullptr) : m_interruption(interruption) {}
 
   struct Decision
   {
@@ -69,15 +62,14 @@ public:
                   const Optimization_state& state,
                   Mover& mover,
                   const Density& density,
-                  const Limits& limits,
+                  const Step_limits& limits,
                   bool is_first)
   {
     Decision decision;
     Violating_vertices violating(patch);
     const Trial trial{patch,   state,      m_candidate,       samples,   m_before,
                       m_after, m_accepted, m_outside_normals, m_changed, m_is_changed};
-    std::get<Largest_density>(m_local).limit = limits.density;
-    std::get<Smallest_angle>(m_local).largest_cosine = limits.cosine;
+    for_each_invariant([&](auto& invariant) { invariant.set(limits); });
     m_candidate = patch.placed;
     if(is_first)
     {
@@ -248,8 +240,8 @@ private:
   }
 
   Interruption* m_interruption;
-  Local_invariants m_local;
-  Sum_invariants m_sums;
+  Local m_local;
+  Sums m_sums;
   Step_field m_steps;
   std::vector<Placed_vertex> m_candidate;
   std::vector<Vector_3> m_outside_normals; // per corner
@@ -259,6 +251,8 @@ private:
   std::vector<char> m_is_changed;         // per face
   std::vector<int> m_violations, m_rings; // per vertex
 };
+
+typedef Backtracking_with<Local_invariants, Sum_invariants> Backtracking;
 
 } // namespace internal
 } // namespace Reference_constrained_optimization

@@ -31,7 +31,7 @@ enum class Moves { flattened, on_surface, by_search, opening };
 // What patches are solved with; it changes between iterations.
 struct Solver_settings
 {
-  Backtracking::Limits limits;
+  Step_limits limits;
   double bad_density = 0;                                          // of an element beyond it
   double search_density = std::numeric_limits<double>::infinity(); // elements beyond it, or with
   double search_cosine = 1;     // the cosine of an angle beyond it, are what a search is for
@@ -86,7 +86,7 @@ public:
     : m_interruption(interruption),
       m_builder(state.mesh),
       m_flattened_mover(state.reference, parameters.mover, interruption),
-      m_on_surface_mover(state.reference, parameters.on_surface_newton_steps, interruption),
+      m_on_surface_mover(state.reference, 1, interruption),
       m_search_mover(state.reference, interruption),
       m_cluster_mover(state.reference),
       m_backtracking(interruption),

@@ -208,8 +208,7 @@ double rest_energy(const Optimization_state& state, const Density& density)
   double energy = 0;
   for(int term = 0; term < density.number_of_terms(); ++term)
     density.visit(term, [&](const auto& d) {
-      energy +=
-        state.elements.weight_of_term(term) * d.value(scale * Eigen::Matrix2d::Identity());
+      energy += state.elements.weight_of_term(term) * d.value(scale * Eigen::Matrix2d::Identity());
     });
   return energy;
 }

@@ -39,12 +39,14 @@ public:
 
   Patch_visits(Optimization_state& state_,
                const Densities& target,
+               double energy, // by these, at the start
                const Loop_parameters& parameters_,
                Visitor& visitor_,
                Result& result_,
                Interruption& interruption_)
     : state(state_),
       target_densities(target),
+      initial_energy(energy),
       parameters(parameters_),
       visitor(visitor_),
       result(result_),
@@ -74,7 +76,6 @@ public:
     const Global_measure before = rescale();
     if(state.stencils.empty())
       settings.limits.cosine = before.sharpest;
-    initial_energy = target_energy();
     state.guards_angles = judges_angles && state.stencils.empty();
     m_initial_angles = sum_of_angles();
     m_initial_volume = volume_of_parts(state);
@@ -186,6 +187,7 @@ public:
 
   Optimization_state& state;
   const Densities& target_densities; // what the caller asked for
+  const double initial_energy;       // by these
   const Loop_parameters& parameters;
   Visitor& visitor;
   Result& result;
@@ -195,7 +197,6 @@ public:
   Patch_partition partition;
   Round_solver<ConcurrencyTag, Visitor> round_solver;
   Solver_settings settings;
-  double initial_energy = 0; // by the target densities
 
 private:
   // measures what depends on the densities, and returns how the state stands by them

@@ -40,18 +40,19 @@ void run_stages(Visits& visits)
     Finishing_stage<Visits>(visits).run();
 }
 
-// Optimizes a mesh on its reference. The state holds what was accepted, also when it is cut short or a visitor
+// Optimizes a mesh on its reference, whose energy is given. The state holds what was accepted, also when it is cut short or a visitor
 // throws.
 template <typename ConcurrencyTag, typename Densities, typename Visitor>
 void optimize_state(Optimization_state& state,
                     const Densities& densities,
+                    double initial_energy,
                     const Loop_parameters& parameters,
                     Visitor& visitor,
                     Result& result,
                     Interruption& interruption)
 {
-  Patch_visits<ConcurrencyTag, Densities, Visitor> visits(state, densities, parameters, visitor,
-                                                          result, interruption);
+  Patch_visits<ConcurrencyTag, Densities, Visitor> visits(
+    state, densities, initial_energy, parameters, visitor, result, interruption);
   const auto note_end = [&]() {
     if(interruption.has_stopped())
       result.status = interruption.status();
