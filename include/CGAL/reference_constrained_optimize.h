@@ -5,11 +5,14 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZE_H
 
+#include <CGAL/Reference_constrained_optimization/Attraction_energy.h>
+#include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/Sum_energy.h>
 #include <CGAL/Reference_constrained_optimization/detect_features.h>
 #include <CGAL/Reference_constrained_optimization/internal/optimize.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
@@ -37,9 +40,8 @@ namespace CGAL {
  * finishing stage, the energy with a barrier on small angles: see `use_finishing_stage`).
  * Border vertices and constrained vertices do not move, not by a bit (unless `relax_constraints` lets
  * them slide along their lines). All other vertices of the result lie on the reference. The same input
- * and seed give the same bits for any number of threads. In other units of length, or up to a thousand
- * diagonals away from the origin, the result is the same but for the rounding of coordinates, unless a
- * face is thinner than a billionth of the reference's diagonal (and, rarely, far away).
+ * and seed give the same bits for any number of threads, and in units of length that are powers of two of
+ * each other. In other units, and at other places, the result differs as with another seed.
  *
  * \tparam ConcurrencyTag `CGAL::Sequential_tag` (default) or `CGAL::Parallel_tag` (needs TBB).
  * \tparam PolygonMesh a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles, or quads
@@ -143,7 +145,7 @@ namespace CGAL {
  *                           less than this part of what it has above the energy of elements that
  *                           all have the shape they have at rest, scaled to the area of the mesh,
  *                           both with single elements capped and without; it ends there, or, for
- *                           energies that prize angles, once starting again with larger patches has
+ *                           energies that judge elements by their angles, once starting again with larger patches has
  *                           gained less, too}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{`4e-3`}
@@ -153,7 +155,7 @@ namespace CGAL {
  *     \cgalParamType{`int`}
  *     \cgalParamDefault{`0`: patches that are flattened hold 4.5 times the square root of the mesh's
  *                       number of triangles, between 400 and 4000, but 1.2 times, 150 at least, for
- *                       energies that prize angles unless `use_on_surface_steps` is `false`; the
+ *                       energies that judge elements by their angles unless `use_on_surface_steps` is `false`; the
  *                       others hold an eighth of the mesh, between 4000 and 20000 triangles, a quarter
  *                       of that (again and again, 1000 at least) once they are held up, and four
  *                       times as much where iterations start again; a quad counts as two triangles}

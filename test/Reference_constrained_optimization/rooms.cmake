@@ -16,6 +16,7 @@ set(rooms
     reading # from the caller's meshes to the state
     selection # which faces make a patch, which patches a round
     shape # distances and turns against the reference
+    invariants # what no accepted step does
     flattening # movers: patches that are laid flat
     on_surface # movers: steps on the surface, search, clusters
     rounds # accept and commit

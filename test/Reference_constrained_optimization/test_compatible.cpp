@@ -1301,7 +1301,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
 
   // without steps the mover only sets up its problem
   internal::On_surface_mover still(surface, 0);
-  RCO_CHECK(!still.propose(patch, density));
+  RCO_CHECK(!still.propose(patch, internal::Patch_samples(), density));
   const internal::Tangent_problem& problem = still.*member(Problem_tag());
   const auto& frames = still.*member(Frames_tag());
   const auto value = [&](const std::vector<Vector_2>& u) {
@@ -1375,7 +1375,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
 
   // steps end on the surface
   internal::On_surface_mover mover(surface, 2);
-  RCO_CHECK(mover.propose(patch, density));
+  RCO_CHECK(mover.propose(patch, internal::Patch_samples(), density));
   int placed = 0;
   for(int v = 0; v < n; ++v)
     for(const double t : {1., 0.4, 1e-3})

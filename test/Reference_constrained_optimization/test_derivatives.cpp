@@ -631,34 +631,32 @@ void test_drift_barrier()
 }
 
 // samples all over a patch, of which those at edges and faces and some of R's vertices are felt
-internal::Patch drifting_patch(const Shape& shape, const std::vector<char>& is_free, Random& random)
+internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& random)
 {
-  internal::Patch patch;
-  patch.polygons = indexed(shape);
-  patch.is_free = is_free;
-  patch.barrier = internal::Drift_barrier(0.02);
-  patch.drift_bound = 0.3;
+  internal::Patch_samples result;
+  result.barrier = internal::Drift_barrier(0.02);
+  result.bound = 0.3;
   const auto direction = [&]() {
     return Vector_3(Vector_3(random(-1, 1), random(-1, 1), random(-1, 1)).normalized());
   };
   const int n = patch.polygons.number_of_faces();
-  patch.samples.resize(4 * n);
+  result.samples.resize(4 * n);
   for(int s = 0; s < 4 * n; ++s)
     if(internal::sample_of(patch, s / 4, s % 4) == s)
     {
-      patch.samples[s].distance = random(0, 0.36);
-      patch.samples[s].bound = patch.drift_bound;
-      patch.samples[s].direction = direction();
+      result.samples[s].distance = random(0, 0.36);
+      result.samples[s].bound = result.bound;
+      result.samples[s].direction = direction();
     }
   for(int f = 0; f < n; f += 2)
   {
-    internal::Patch::Guest guest{f, f, random(0, 0.36), 0.3};
+    internal::Patch_samples::Guest guest{f, f, random(0, 0.36), 0.3};
     guest.triangle = f;
     guest.barycentric = Vector_3(0.2, 0.5, 0.3);
     guest.direction = direction();
-    patch.guests.push_back(guest);
+    result.guests.push_back(guest);
   }
-  return patch;
+  return result;
 }
 
 // the energy, with the barrier, as the optimizer sees it
@@ -719,13 +717,19 @@ void test_newton_step(const Density& density)
     }
     if(trial % 2 == 1)
     {
-      const internal::Patch patch = drifting_patch(regular, problem.is_free, random);
+      internal::Patch patch;
+      patch.polygons = indexed(regular);
+      patch.is_free = problem.is_free;
+      const internal::Patch_samples samples = drifting_samples(patch, random);
+      problem.start = u; // elsewhere than where the step begins
+      for(Vector_2& p : problem.start)
+        p += 0.1 * Vector_2(random(-1, 1), random(-1, 1));
       std::vector<internal::Tangent_frame> motions(u.size());
       for(internal::Tangent_frame& m : motions)
         for(int i = 0; i < 6; ++i)
           m(i / 2, i % 2) = random(-0.05, 0.05);
-      problem.carriers = internal::drift_carriers(patch);
-      problem.drift.collect(patch, [&](int v) { return motions[v]; });
+      problem.carriers = internal::drift_carriers(patch, samples);
+      problem.drift.collect(patch, samples, [&](int v) { return motions[v]; });
       RCO_CHECK(problem.drift.terms().size() > 10);
       const auto add = [&](const int* corners, const Vector_3& barycentric, double distance,
                            double bound, const Vector_3& direction) {
@@ -736,18 +740,18 @@ void test_newton_step(const Density& density)
         for(int k = 0; k < 3; ++k)
         {
           const Vector_2 slope = barycentric(k) * motions[corners[k]].transpose() * direction;
-          r += slope.dot(u[corners[k]]);
+          r += slope.dot(u[corners[k]] - problem.start[corners[k]]);
           if(variable[corners[k]] >= 0)
             row.segment<2>(2 * variable[corners[k]]) = slope;
         }
-        const auto d = patch.barrier.derivatives(r, bound);
+        const auto d = samples.barrier.derivatives(r, bound);
         gradient += d.first * row;
         hessian += d.second * row * row.transpose();
       };
-      for(int s = 0; s < int(patch.samples.size()); ++s)
+      for(int s = 0; s < int(samples.samples.size()); ++s)
         add(&patch.polygons.corner_vertex[s / 4 * 3], internal::sample_barycentric(s % 4),
-            patch.samples[s].distance, patch.drift_bound, patch.samples[s].direction);
-      for(const internal::Patch::Guest& g : patch.guests)
+            samples.samples[s].distance, samples.bound, samples.samples[s].direction);
+      for(const internal::Patch_samples::Guest& g : samples.guests)
         add(&patch.polygons.corner_vertex[3 * g.triangle], g.barycentric, g.distance, g.bound,
             g.direction);
     }

@@ -464,6 +464,10 @@ void test_barrier(const std::string& name, const Density& density, double steepn
 {
   const Scope scope("angle barrier, " + name + ", " + std::to_string(steepness) + " per degree");
   const double unit = 6 / steepness; // degrees
+  const auto densities = internal::make_element_densities(std::make_tuple(density));
+  typedef internal::Angle_barrier_density<std::decay_t<decltype(densities)>> Barrier;
+  internal::Element_set::Element element;
+  element.is_judged = true;
   Eigen::Matrix2d equilateral;
   equilateral << 1, 0.5, 0, std::sqrt(0.75);
   Random random(7);
@@ -479,20 +483,23 @@ void test_barrier(const std::string& name, const Density& density, double steepn
                                  Vector_3(shape(0, 1), shape(1, 1), 0)};
     const double angle = smallest_angle(corners[0], corners[1], corners[2]);
     const double target = (std::max)(1., angle + unit * random(-6, 4));
-    const internal::Angle_barrier_density<Density> barrier(density, target, steepness);
+    const Barrier barrier(densities, target, steepness);
     RCO_CHECK_EQUAL(barrier.target(), target);
 
     Eigen::Vector4d gradient, plain_gradient;
     Eigen::Matrix4d hessian, plain_hessian;
-    const double value = barrier.projected_derivatives(J, gradient, hessian);
+    const double value = barrier.projected_derivatives(element, J, gradient, hessian);
     const double plain_value =
       internal::projected_derivatives(density, J, plain_gradient, plain_hessian, 0);
-    RCO_CHECK_NEAR(barrier.value(J), value, 1e-12 * value);
+    RCO_CHECK_NEAR(barrier.value(element, J), value, 1e-12 * value);
     RCO_CHECK_LESS_EQUAL(plain_value, value);
+    element.is_judged = false;
+    RCO_CHECK_EQUAL(barrier.value(element, J), density.value(J));
+    element.is_judged = true;
     if(angle > target + 20 / steepness + 0.01)
     {
       RCO_CHECK_EQUAL(value, plain_value);
-      RCO_CHECK_EQUAL(barrier.value(J), density.value(J));
+      RCO_CHECK_EQUAL(barrier.value(element, J), density.value(J));
       RCO_CHECK(gradient == plain_gradient && hessian == plain_hessian);
       ++plain_again;
       continue;
@@ -525,7 +532,7 @@ void test_barrier(const std::string& name, const Density& density, double steepn
       const auto at = [&](double t) {
         Eigen::Matrix2d K = J;
         K.data()[k] += t;
-        return barrier.value(K);
+        return barrier.value(element, K);
       };
       const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
       RCO_CHECK_NEAR(gradient(k), slope, 1e-5 * gradient.norm() + 1e-14 * value / h);
@@ -536,18 +543,18 @@ void test_barrier(const std::string& name, const Density& density, double steepn
   RCO_CHECK_LESS(100, plain_again);
 
   // turned over, or without extent
-  const internal::Angle_barrier_density<Density> barrier(density, 30, steepness);
+  const Barrier barrier(densities, 30, steepness);
   for(const double s : {-1., -1e-9, 0., 1e-9, 1e9})
     for(const double t : {0., 1e-40, 1.})
     {
       const Eigen::Matrix2d J = Vector_2(t, s * t).asDiagonal();
       Eigen::Vector4d gradient;
       Eigen::Matrix4d hessian;
-      RCO_CHECK(std::isfinite(barrier.value(J)));
-      RCO_CHECK(std::isfinite(barrier.projected_derivatives(J, gradient, hessian)));
+      RCO_CHECK(std::isfinite(barrier.value(element, J)));
+      RCO_CHECK(std::isfinite(barrier.projected_derivatives(element, J, gradient, hessian)));
     }
-  RCO_CHECK_LESS(barrier.value(Vector_2(1, 0.3).asDiagonal()),
-                 barrier.value(Vector_2(1, -0.3).asDiagonal()));
+  RCO_CHECK_LESS(barrier.value(element, Vector_2(1, 0.3).asDiagonal()),
+                 barrier.value(element, Vector_2(1, -0.3).asDiagonal()));
 }
 
 // ------------------------------------------------------------------------------ finishing stage

@@ -36,8 +36,8 @@ struct Stopped : std::runtime_error
   Stopped() : std::runtime_error("the visitor stops") {}
 };
 
-// what the canonical frame rounds may show in the energies that a visitor is told of
-const double on_the_way = 1e-4;
+// what rounding of sums may show in the energies that a visitor is told of
+const double on_the_way = 1e-8;
 
 // Tests every patch and adds up what it is told; stops when told to.
 struct Recorder : RCO::Default_visitor

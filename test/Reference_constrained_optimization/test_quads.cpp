@@ -257,9 +257,8 @@ Outcome run(M& mesh, const M& reference, const Energy& energy, const Options& op
     for(std::size_t i = 1; i < seen.energies.size(); ++i)
       RCO_CHECK_NEAR((seen.energies[i] - seen.energies[i - 1]) * elements,
                      seen.changes[i] - seen.changes[i - 1], 1e-8 * r.initial_energy * elements);
-    // coordinates are rounded to the canonical frame on the way
     RCO_CHECK_NEAR((r.final_energy - r.initial_energy) * elements, seen.energy_change,
-                   1e-4 * r.initial_energy * elements);
+                   1e-8 * r.initial_energy * elements);
   }
   RCO_CHECK_EQUAL(long(defects_after(r)) - long(defects_before(r)), seen.defect_change);
   RCO_CHECK_EQUAL(r.number_of_patches, seen.patches);

@@ -205,9 +205,10 @@ void newton_step_on_surface(benchmark::State& state)
 {
   const Patch patch = scene().patch(int(state.range(0)));
   On_surface_mover mover(scene().surface, 1);
-  mover.propose(patch, scene().energy.density());
+  mover.propose(patch, Patch_samples(), scene().energy.density());
   for(auto _ : state)
-    benchmark::DoNotOptimize(mover.propose_again(patch, {}, scene().energy.density()));
+    benchmark::DoNotOptimize(
+      mover.propose_again(patch, Patch_samples(), {}, scene().energy.density()));
 }
 
 // The system of a patch of triangles (with its free vertices), or of a square of quads in which

@@ -10,7 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/rounds/acceptance.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
@@ -100,20 +100,22 @@ std::vector<Vector_2> visit(Patch& patch,
                             const RCO::Minimum_angle_energy& energy,
                             Flattened_mover& mover)
 {
-  Acceptance_test acceptance(nullptr);
-  Acceptance_test::Limits limits;
-  limits.worst = std::numeric_limits<double>::infinity();
+  Backtracking backtracking;
+  Step_limits limits;
+  limits.density = std::numeric_limits<double>::infinity();
   std::vector<Vector_2> u = mover.flattening().positions;
   bool proposes = true;
   for(int pass = 0; proposes && pass < Loop_parameters().proposals_per_patch; ++pass)
   {
-    if(!acceptance.decide(patch, state, mover, energy.density(), limits, pass == 0).accepted)
+    if(!backtracking
+          .decide(patch, Patch_samples(), state, mover, energy.density(), limits, pass == 0)
+          .accepted)
       break;
-    patch.placed = acceptance.candidate();
-    const std::vector<double>& steps = acceptance.steps();
+    patch.placed = backtracking.candidate();
+    const std::vector<double>& steps = backtracking.steps();
     for(std::size_t v = 0; v < u.size(); ++v)
       u[v] += steps[v] * (mover.target()[v] - u[v]);
-    proposes = mover.propose_again(patch, steps, energy.density());
+    proposes = mover.propose_again(patch, Patch_samples(), steps, energy.density());
   }
   return u;
 }
@@ -160,7 +162,7 @@ void write_stages(const std::string& mesh_file,
   Patch patch = Patch_builder(copy.mesh).build(faces, state);
   write(folder + "/patch.off", patch.polygons, positions(patch));
   Flattened_mover mover(surface, Flattened_mover::Parameters());
-  if(!mover.propose(patch, energy.density()))
+  if(!mover.propose(patch, Patch_samples(), energy.density()))
     throw std::runtime_error("nothing can be made of the patch around this seed");
   write(folder + "/patch_flat.off", patch.polygons, in_space(mover.flattening().positions));
   write(folder + "/patch_optimized.off", patch.polygons,

@@ -170,8 +170,6 @@ bool run(const Command_line& arguments, Row& row)
      in.expected.outcomes == std::vector<Outcome>{Outcome::nothing_to_do})
     in.expected = is_optimized(); // borders may have something to do
   const double size = diagonal(in.reference);
-  row.add("is_thin", !((std::min)(smallest_relative_height(in.mesh, size),
-                                  smallest_relative_height(in.reference, size)) > 1e-9));
   const bool has_reference = in.has_reference || variant.noise > 0;
   apply(variant, size, in.mesh, !has_reference);
   apply(variant, size, in.reference, true);

@@ -1,12 +1,11 @@
 """Runs the package on everything, and tells how the runs ended.
 
 Optimizes every mesh (OFF, OBJ, PLY, STL) of files and folders, and small generated inputs with something
-wrong: as they are, times 2^-20, 2^20, 1e-6 and 1e6, translated by 1e3 diagonals, with another random seed,
+wrong: as they are, times 2^-20, 2^20, 1e-6 and 1e6, translated by 1e6 diagonals, with another random seed,
 and with random noise of up to 0.3 mean edges against the mesh without it. Each run has a process of its
 own. How it ended is compared with what is expected, and what the package promises is verified. Times a
-power of two all digits of the smallest angles must be the same. In other units and far away they must not
-change by 0.1 degrees, unless a face is thinner than a billionth of the diagonal; how far they change is
-told, beside what another random seed does. Markdown tables and a list of all that is not as expected go to
+power of two all digits of the smallest angles must be the same. How far they change in other units and far
+away is told, beside what another random seed does. Markdown tables and a list of all that is not as expected go to
 the standard output.
 
 Exit code: 0, 1 if a run was not as expected, 2 if an option could not be used.
@@ -33,7 +32,7 @@ VARIANTS = (
     Variant("times 2^20", "--scale 1048576", "exact"),
     Variant("times 1e-6", "--scale 1e-6", "rounded"),
     Variant("times 1e6", "--scale 1e6", "rounded"),
-    Variant("1e3 diagonals away", "--shift 1e3", "rounded"),
+    Variant("1e6 diagonals away", "--shift 1e6", "rounded"),
     Variant("another seed", "--seed 1", "seed"),
     Variant("noise", "--noise 0.3"),
 )
@@ -153,7 +152,7 @@ def main():
               "\n---|---|--:|---|---|---|--:|---")
     counts, refusals = collections.Counter(), collections.Counter()
     as_is, changes = {}, collections.defaultdict(list)
-    unexpected, fallen, thin = [], 0, 0
+    unexpected, fallen = [], 0
     for (i, v), row in zip(jobs, runner.run([*i.arguments, *v.options.split(), *switches]
                                             for i, v in jobs)):
         where, outcome, text = f"{i.name} ({v.name})", row["outcome"], row["text"]
@@ -177,11 +176,8 @@ def main():
             continue
         gains = [a - b for a, b in zip(angles(row), as_is[i])]
         changes[v.name].append(gains)
-        thin += v.kind != "seed" and row["is_thin"]
         if v.kind == "exact" and gains != [0, 0]:
             unexpected.append(where + ": other angles than as is")
-        elif v.kind == "rounded" and not row["is_thin"] and max(map(abs, gains)) >= 0.1:
-            unexpected.append(where + ": the angles changed by 0.1 degrees or more")
 
     for kind in dict.fromkeys(i.kind for i in inputs):
         print_table([kind, *OUTCOMES],
@@ -200,8 +196,6 @@ def main():
         print_table(["Angles against the run as is", "runs", "minimum changed by 0.1 degrees",
                      "mean changed", "median change", "largest", "minimum gains on average",
                      "mean gains on average"], lines)
-    print("\nFaces thinner than a billionth of the diagonal, for which angles may hang on rounding, in "
-          f"{thin} runs in other units or places.")
     print("\nThe mean of the smallest angles fell by more than a degree, for the sake of the worst, in "
           f"{fallen} runs.")
     print_list("Not as expected", unexpected)

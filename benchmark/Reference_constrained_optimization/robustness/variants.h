@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 struct Variant
@@ -30,24 +29,6 @@ inline double diagonal(const Mesh& mesh)
     if(is_finite(mesh.point(v)))
       box += mesh.point(v).bbox();
   return mesh.is_empty() ? 0 : std::hypot(box.x_span(), box.y_span(), box.z_span());
-}
-
-// the smallest height of a triangle at a corner of a face, over the diagonal
-inline double smallest_relative_height(const Mesh& mesh, double diagonal)
-{
-  double smallest = std::numeric_limits<double>::infinity();
-  for(const Mesh::Halfedge_index h : mesh.halfedges())
-  {
-    if(mesh.is_border(h))
-      continue;
-    const Kernel::Point_3 &a = mesh.point(mesh.source(h)), &b = mesh.point(mesh.target(h)),
-                          &c = mesh.point(mesh.target(mesh.next(h)));
-    const double longest = std::sqrt((std::max)(
-      {CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)}));
-    const double doubled_area = 2 * std::sqrt(CGAL::squared_area(a, b, c));
-    smallest = (std::min)(smallest, longest > 0 ? doubled_area / longest / diagonal : 0);
-  }
-  return smallest;
 }
 
 // the mean length of the edges whose vertices are finite

@@ -3,29 +3,39 @@
 \cgalConcept
 
 The concept `ReferenceConstrainedEnergy` says what `CGAL::reference_constrained_optimize()` asks of
-an energy. An energy splits every face of the mesh into *elements*, each a triangle of three
-vertices of that face together with the shape that this triangle would like to have, its rest
-triangle. What deviation from that shape costs is up to the density, which is evaluated at the
-Jacobian of the affine map from the rest triangle to the element as it lies on the reference. The
-energy of the mesh is the sum over all elements; results report the mean.
+an energy. An energy has *elements*, *stencils*, or both; `CGAL::Reference_constrained_optimization::sum()`
+makes weighted sums of energies.
 
-A triangle has usually one element, a quadrilateral four, one per corner, which overlap. A face may
-have none, but the mesh must have one.
+An *element* is a triangle of three vertices of a face together with the shape that this triangle would like
+to have, its rest triangle. What deviation from that shape costs is up to the density, which is evaluated at the
+Jacobian of the affine map from the rest triangle to the element as it lies on the reference, and multiplied by
+the element's weight. A triangle has usually one element, a quadrilateral four, one per corner, which overlap. A
+face may have none, but the mesh must have one. An energy without elements is therefore a summand only.
 
-The object is only read, and must live until the function returns.
+A *stencil* is a list of vertices, anywhere in the mesh, whose positions in space the energy is a function of. An
+energy with stencils defines `stencil_size`, `append_stencils()` and `value()`; one without leaves them out.
+
+The energy of the mesh is the sum over all elements and stencils; results report it over the number of elements.
+
+The object is only read, from several threads at a time, and must live until the function returns.
 
 \cgalHasModel{CGAL::Reference_constrained_optimization::Minimum_angle_energy}
 \cgalHasModel{CGAL::Reference_constrained_optimization::Quad_regularity_energy}
 \cgalHasModel{CGAL::Reference_constrained_optimization::Quad_angle_energy}
 \cgalHasModel{CGAL::Reference_constrained_optimization::Compatible_remeshing_energy}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Attraction_energy}
+\cgalHasModel{CGAL::Reference_constrained_optimization::Sum_energy}
 
 \sa `DistortionDensity`
 */
 class ReferenceConstrainedEnergy
 {
 public:
-  /// model of `DistortionDensity`.
+  /// model of `DistortionDensity`; of an energy with elements.
   typedef unspecified_type Density;
+
+  /// by what the worst elements are judged. *Optional*; without it the sum alone counts.
+  static constexpr CGAL::Reference_constrained_optimization::Element_criterion element_criterion;
 
   /// returns the density, which all elements share.
   const Density& density() const;
@@ -35,10 +45,11 @@ public:
 
   Within an element, `Energy_element::corners` are three different positions from 0 to
   `context.degree(f)` exclusively, in the cyclic order of the face; `Energy_element::rest` has the
-  unit of length of the mesh, and a positive determinant. `context` knows the connectivity, the mean
-  edge length and the areas of mesh and reference, but no positions: an energy whose rest triangles
-  depend on the face, for example on a second mesh, keeps them itself, by the position of the face in
-  `faces(mesh)`.
+  unit of length of the mesh, and a positive determinant; `Energy_element::weight` is positive. `context` knows the
+  connectivity, the mean edge length and the areas of mesh and reference; the object that is handed over is
+  a `CGAL::Reference_constrained_optimization::Mesh_energy_context`, which also has the mesh, its point map and
+  its descriptors: an energy that asks for them, for example to read a property map, is a template of the
+  context's type.
 
   It is called once for every face that is to be optimized (all, or those of the range of faces), in
   the order of `faces(mesh)`, from the thread that called `CGAL::reference_constrained_optimize()`,
@@ -51,4 +62,36 @@ public:
     const CGAL::Reference_constrained_optimization::Energy_context& context,
     std::size_t f,
     std::vector<CGAL::Reference_constrained_optimization::Energy_element>& elements) const;
+
+  /// the number of vertices of a stencil, 1 to 6; of an energy with stencils.
+  static constexpr int stencil_size;
+
+  /*!
+  appends the stencils, before any vertex has moved. `context` is as for elements.
+
+  \throws CGAL::Reference_constrained_optimization::Invalid_input if the energy does not fit the mesh.
+  */
+  template <typename Context>
+  void append_stencils(
+    const Context& context,
+    std::vector<CGAL::Reference_constrained_optimization::Energy_stencil<stencil_size>>& stencils)
+    const;
+
+  /// returns the value of the stencil with number `stencil`, in the order in which they were appended, with its
+  /// vertices at `points`. It must be finite everywhere, twice differentiable, and not negative.
+  double value(std::size_t stencil,
+               const std::array<Eigen::Vector3d, stencil_size>& points) const;
+
+  /*!
+  writes the gradient by the coordinates of the points, one after the other, and a positive semi-definite
+  matrix in place of the Hessian, and returns the value.
+
+  This function is *optional*. Where it is missing, derivatives are taken by differences of `value()`, a
+  ten-thousandth of a mean edge apart, and negative eigenvalues are set to zero.
+  */
+  double projected_derivatives(
+    std::size_t stencil,
+    const std::array<Eigen::Vector3d, stencil_size>& points,
+    Eigen::Matrix<double, 3 * stencil_size, 1>& gradient,
+    Eigen::Matrix<double, 3 * stencil_size, 3 * stencil_size>& hessian) const;
 };

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include <boost/graph/graph_traits.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +16,19 @@
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * says by what the worst elements of an energy are judged.
+ */
+enum class Element_criterion {
+  none, ///< the sum alone counts.
+  /// the smallest angle of a triangle: patches that are flattened are no larger than it takes to open sharp
+  /// triangles, a last stage raises the smallest angle of the mesh (`use_finishing_stage`), and, unless the
+  /// energy has stencils, too, the mean of the faces' smallest angles does not fall below that of the input.
+  smallest_angle
+};
 
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
@@ -30,6 +45,8 @@ struct Energy_element
   /// the rest triangle: columns are the edge vectors from its first to its second and third vertex
   /// (2x2, units of length of the mesh); the determinant must be positive.
   Eigen::Matrix2d rest = Eigen::Matrix2d::Identity();
+  /// by what the density is multiplied; positive.
+  double weight = 1;
 };
 
 /*!
@@ -79,6 +96,54 @@ private:
   double m_mean_edge_length;
   double m_mesh_area;
   double m_reference_area;
+};
+
+/*!
+ * \ingroup PkgReferenceConstrainedOptimizationRef
+ *
+ * is an `Energy_context` that also knows the mesh itself, so that an energy can use property maps.
+ *
+ * \tparam PolygonMesh the mesh that is optimized
+ * \tparam VertexPointMap its point map
+ */
+template <typename PolygonMesh, typename VertexPointMap>
+class Mesh_energy_context : public Energy_context
+{
+public:
+  /// descriptors of the mesh.
+  typedef typename boost::graph_traits<PolygonMesh>::face_descriptor face_descriptor;
+  /// descriptors of the mesh.
+  typedef typename boost::graph_traits<PolygonMesh>::vertex_descriptor vertex_descriptor;
+
+  /// \cond SKIP_IN_MANUAL
+  Mesh_energy_context(const PolygonMesh& mesh,
+                      const VertexPointMap& point_map,
+                      const Energy_context& context)
+    : Energy_context(context),
+      m_mesh(mesh),
+      m_point_map(point_map)
+  {
+    for(const face_descriptor f : faces(mesh))
+      m_faces.push_back(f);
+    for(const vertex_descriptor v : vertices(mesh))
+      m_vertices.push_back(v);
+  }
+  /// \endcond
+
+  /// the mesh, as it is on input.
+  const PolygonMesh& mesh() const { return m_mesh; }
+  /// the map from its vertices to points, as they are on input.
+  const VertexPointMap& point_map() const { return m_point_map; }
+  /// the face at position `f` in `faces(mesh)`.
+  face_descriptor face_descriptor_of(std::size_t f) const { return m_faces[f]; }
+  /// the vertex at position `v` in `vertices(mesh)`.
+  vertex_descriptor vertex_descriptor_of(std::size_t v) const { return m_vertices[v]; }
+
+private:
+  const PolygonMesh& m_mesh;
+  VertexPointMap m_point_map;
+  std::vector<face_descriptor> m_faces;
+  std::vector<vertex_descriptor> m_vertices;
 };
 
 /*!

@@ -35,6 +35,8 @@ class Minimum_angle_energy
 public:
   /// model of `DistortionDensity`.
   typedef Exponential_MIPS_density Density;
+  /// worst elements are judged by their smallest angle.
+  static constexpr Element_criterion element_criterion = Element_criterion::smallest_angle;
 
   /// constructs the energy. \param exponent_factor the factor `k`, a positive number; 1 is the
   /// paper's. \throws Invalid_input if it is not positive and finite.

@@ -48,8 +48,7 @@ struct Stage_times
  *
  * Energies are means over the elements of the energy's density, measured on the mesh as its
  * vertices lie on the reference, and always finite: densities continue finitely beyond their cap.
- * Lengths are in the unit of the points; the drift is that of coordinates that are rounded to a
- * few millionths of the reference's diagonal at most.
+ * Lengths are in the unit of the points.
  */
 struct Result
 {

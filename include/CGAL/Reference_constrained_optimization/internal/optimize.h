@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 #include <CGAL/Reference_constrained_optimization/Result.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/face_range.h>
@@ -17,9 +17,8 @@
 #include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
-#include <CGAL/Reference_constrained_optimization/internal/stages/outer_loop.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/optimize_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
-#include <CGAL/Reference_constrained_optimization/internal/writing/caller_view.h>
 #include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
 #include <CGAL/Reference_constrained_optimization/internal/writing/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
@@ -58,13 +57,12 @@ bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
     return false;
 }
 
-// Takes the points of a copy into the frame, and returns them as they were.
-inline std::vector<Vector_3> take_into(const Canonical_frame& frame, Mesh_copy& copy)
+// Takes the positions of the vertices that may move to where the caller gets them.
+inline void round_to_caller(const Frame& frame, Optimization_state& state)
 {
-  std::vector<Vector_3> before = copy.points;
-  for(Vector_3& p : copy.points)
-    p = frame(p);
-  return before;
+  for(std::size_t v = 0; v < state.vertices.size(); ++v)
+    if(state.is_free[v])
+      state.vertices[v].position = frame(frame.to_caller(state.vertices[v].position));
 }
 
 // how far mesh and reference are apart, in the points that the drift guard looks at
@@ -112,25 +110,29 @@ void optimize(const FaceRange& range,
   Mesh_copy other =
     is_own ? Mesh_copy() : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
   const Mesh_copy& reference_copy = is_own ? copy : other;
-  const Canonical_frame frame(reference_copy, copy);
-  const std::vector<Vector_3> mesh_points = take_into(frame, copy),
-                              other_points = take_into(frame, other);
-  const std::vector<Vector_3>& reference_points = is_own ? mesh_points : other_points;
-  Reference_surface surface(reference_copy);
-  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return copy.points[v]; }))
+  const Frame frame(reference_copy);
+  const double unit = frame.unit(), distance_of_origin = frame.distance_of_origin();
+  frame.take(copy);
+  frame.take(other);
+  Reference_surface surface(reference_copy, distance_of_origin);
+  const auto point = [&](int v) -> const Vector_3& { return copy.points[v]; };
+  if(!has_area(copy.mesh, point, distance_of_origin))
     throw Invalid_input("mesh: every face has zero area");
   check_location_map(surface, np);
   interruption.check();
   // energies are told of lengths as the caller knows them
-  const Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
-                               mean_edge_length(copy.mesh, mesh_points),
-                               surface_area(copy.mesh, mesh_points),
-                               surface_area(surface.mesh(), reference_points));
+  const Mesh_energy_context context(
+    mesh, vpm,
+    Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
+                   unit * mean_edge_length(copy.mesh, copy.points),
+                   unit * unit * surface_area(copy.mesh, copy.points),
+                   unit * unit * surface.area()));
   const std::vector<char> is_in_range = mark_faces(mesh, range);
-  const Element_set elements(energy, context, is_in_range, frame);
+  const Element_set elements(energy, context, is_in_range, unit);
   interruption.check();
-  Optimization_state state{copy.mesh, surface,     elements,       {}, {}, {},
-                           {},        is_in_range, frame.caution()};
+  Optimization_state state{copy.mesh, surface, elements, {}, {}};
+  state.is_in_range = is_in_range;
+  state.stencils = Stencil_set(energy, context, frame);
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
   // a copy of the mesh is no other reference
@@ -151,8 +153,9 @@ void optimize(const FaceRange& range,
   if(!features.is_mechanical.empty() && is_same)
     constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
-  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption, frame);
-  check_distances(copy.points, state, frame);
+  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption,
+                                     distance_of_origin);
+  check_distances(copy.points, state, unit);
   state.is_mechanical = std::move(features.is_mechanical);
   state.bounds_turn = faces_on(state, state.is_mechanical);
   if(!state.bounds_turn.empty())
@@ -163,7 +166,8 @@ void optimize(const FaceRange& range,
       state.largest_volume_change = largest_part * std::abs(volume_of_parts(state));
   }
   // nothing of R would be closest to such a mesh
-  if(!has_area(copy.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }))
+  const auto placed = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
+  if(!has_area(copy.mesh, placed, distance_of_origin))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
   if(loop_parameters.relax_constraints || result.number_of_feature_edges > 0)
   {
@@ -172,16 +176,22 @@ void optimize(const FaceRange& range,
     if(!is_same && result.number_of_feature_edges > 0)
       lines.set_features(feature_edges(surface.mesh(), features.is_feature));
     Sliding_vertices(state, constraints, lines, loop_parameters.relax_constraints,
-                     frame.resolution(), result);
+                     rounding_of(copy.mesh, point, distance_of_origin), result);
   }
-  Caller_view view(frame, mesh_points, reference_points, state);
-  view.remember_start();
-  result.largest_initial_distance = view.largest_distance();
+  for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
+    if(state.has_face_that_counts(v))
+      result.largest_initial_distance =
+        (std::max)(result.largest_initial_distance,
+                   unit * (state.vertices[v].on_reference.position - copy.points[v]).norm());
+  round_to_caller(frame, state);
+  const std::vector<Placed_vertex> start_vertices = state.vertices;
   result.times.setup = seconds_since(start);
 
-  const auto& density = energy.density();
-  typedef typename std::decay<decltype(density)>::type Density;
-  const Global_measure initial = view.measure<ConcurrencyTag>(density);
+  const auto densities = element_densities(energy);
+  const auto measure_all = [&]() {
+    return measure<ConcurrencyTag>(state, densities, std::numeric_limits<double>::infinity());
+  };
+  const Global_measure initial = measure_all();
   const double number_of_elements = (std::max)(1, elements.size());
   result.initial_energy = initial.energy / number_of_elements;
   result.initial_number_of_flips = initial.flips;
@@ -189,65 +199,50 @@ void optimize(const FaceRange& range,
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
 
   Loop_parameters framed_parameters = loop_parameters;
-  const double default_drift_bound = 0.25 * mean_edge_length(surface.mesh(), reference_points);
-  framed_parameters.default_drift_bound = frame.length(default_drift_bound);
-  if(std::isfinite(loop_parameters.drift_bound))
-    framed_parameters.drift_bound = frame.length(loop_parameters.drift_bound);
+  framed_parameters.drift_bound /= unit;
   const auto finish = [&]() {
-    // what goes wrong at the end is mended where it is
-    Mending<ConcurrencyTag> mending(view);
+    round_to_caller(frame, state);
+    Global_measure final = measure_all();
     if(!loop_parameters.accepts_all)
-      mending.run();
-    Global_measure final = view.measure<ConcurrencyTag>(density);
-    const auto has_risen = [&]() {
-      return final.defects() > initial.defects() ||
-             (final.defects() == initial.defects() && final.energy > initial.energy);
-    };
-    if(mending.has_mended() && std::isfinite(result.drift_bound))
-      result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
-    const auto has_drifted = [&]() {
-      return result.drift >
-             (std::max)(Drift_barrier::last_part * result.drift_bound, result.initial_drift);
-    };
-    // next to what has returned faces may be stretched
-    while(mending.has_mended() && (has_risen() || has_drifted() || mending.has_lowered_angles()) &&
-          mending.grow())
     {
-      mending.run();
-      final = view.measure<ConcurrencyTag>(density);
-      if(std::isfinite(result.drift_bound))
-        result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
+      Mending<ConcurrencyTag> mending(state, start_vertices);
+      const auto is_worse = [&]() {
+        return final.defects() > initial.defects() ||
+               (final.defects() == initial.defects() && final.energy > initial.energy) ||
+               (mending.has_mended() &&
+                (mending.has_lowered_angles() ||
+                 result.drift > (std::max)(Drift_barrier::last_part * result.drift_bound,
+                                           result.initial_drift)));
+      };
+      const auto mend = [&]() {
+        mending.run();
+        if(!mending.has_mended())
+          return;
+        final = measure_all();
+        if(std::isfinite(result.drift_bound))
+          result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
+      };
+      mend();
+      // next to what has returned faces may be stretched
+      while(is_worse() && mending.grow(densities))
+        mend();
     }
-    // a gain that rounding to the frame made up is none
-    if(!view.has_moved_noticeably() || has_risen())
-    {
-      view.return_to_start();
-      final = initial;
-      result.drift = result.initial_drift;
-    }
-    write_points(mesh, vpm, mesh_points, view);
-    write_locations(mesh, reference, np, state, view);
+    write_points(mesh, vpm, copy.points, state, frame);
+    write_locations(mesh, reference, np, state);
     result.final_energy = final.energy / number_of_elements;
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
-    const double unit = frame.unit();
-    if(result.drift_bound == framed_parameters.drift_bound)
-      result.drift_bound = loop_parameters.drift_bound;
-    else if(result.drift_bound == framed_parameters.default_drift_bound)
-      result.drift_bound = default_drift_bound;
-    else
-      result.drift_bound *= unit;
+    result.drift_bound *= unit;
     result.initial_drift *= unit;
     result.drift *= unit;
   };
   if(result.number_of_free_vertices > 0)
   {
-    Outer_loop<ConcurrencyTag, Density, Visitor> loop(state, density, framed_parameters, visitor,
-                                                      result, interruption);
     try
     {
-      loop.run();
+      optimize_state<ConcurrencyTag>(state, densities, initial.energy, framed_parameters, visitor,
+                                     result, interruption);
     }
     catch(...)
     {

@@ -66,12 +66,12 @@ orientation_defects(const FaceGraph& mesh,
   for(int f = 0; f < m.number_of_faces(); ++f)
   {
     normals[f] = internal::face_normal(m, vertex, f);
-    result.number_of_flips += internal::is_flipped(m, vertex, f, normals[f], 0);
+    result.number_of_flips += internal::is_flipped(m, vertex, f, normals[f]);
   }
   for(int c = 0; c < m.number_of_corners(); ++c)
     if(m.opposite[c] > c)
       result.number_of_fold_edges +=
-        internal::is_folded(normals[m.corner_face[c]], normals[m.corner_face[m.opposite[c]]], 0);
+        internal::is_folded(normals[m.corner_face[c]], normals[m.corner_face[m.opposite[c]]]);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Element_densities.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
@@ -21,11 +22,12 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A mover proposes new positions of a patch's free vertices. It provides
-//   bool propose(const Patch&, const Density&);
+//   bool propose(const Patch&, const Patch_samples&, const Density&);
 // which says whether there is anything to try;
 //   bool place(const Patch&, int v, double t, Placed_vertex&);
 // which puts local vertex v at part t in (0, 1] of its way, and says whether it could;
-//   bool propose_again(const Patch&, const std::vector<double>& steps, const Density&);
+//   bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>& steps,
+//                     const Density&);
 // which, after a proposal was accepted with the given part of its way for every vertex, and the
 // patch updated accordingly, proposes further ones.
 //
@@ -40,7 +42,6 @@ public:
     Flattening_parameters flattening;
     bool use_surface_metric = true;
     int newton_steps = 3; // per proposal
-    bool check_overlap = true;
   };
 
   Flattened_mover(const Reference_surface& reference,
@@ -54,7 +55,7 @@ public:
   {}
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density& density)
+  bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     const Indexed_mesh& triangles = patch.triangles();
@@ -63,8 +64,7 @@ public:
       m_points.push_back(p.position);
     m_flattening = m_flattener.flatten(triangles, m_points, m_parameters.flattening);
     const bool is_flat = m_flattening.path != Flattening_path::failed;
-    m_overlaps = is_flat && m_parameters.check_overlap &&
-                 !has_simple_border(triangles, m_flattening.positions);
+    m_overlaps = is_flat && !has_simple_border(triangles, m_flattening.positions);
     m_flattening_time = seconds_since(start);
     m_optimization_time = 0;
     if(!is_flat)
@@ -72,19 +72,22 @@ public:
 
     check(m_interruption);
     const auto start_of_descent = std::chrono::steady_clock::now();
-    m_problem.carriers = drift_carriers(patch);
+    m_problem.carriers = drift_carriers(patch, samples);
     m_start_triangle.assign(m_flattening.positions.size(), -1);
     for(int c = 0; c < triangles.number_of_corners(); ++c)
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
-    set_up_problem(patch);
+    set_up_problem(patch, samples);
     m_optimizer.analyze(m_problem);
-    const bool proposes = optimize(density);
+    const bool proposes = optimize(patch, density);
     m_optimization_time = seconds_since(start_of_descent);
     return proposes;
   }
 
   template <typename Density>
-  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  bool propose_again(const Patch& patch,
+                     const Patch_samples& samples,
+                     const std::vector<double>& steps,
+                     const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     std::vector<Vector_2>& u = m_flattening.positions;
@@ -93,8 +96,8 @@ public:
     bool proposes = false;
     if(is_locally_injective(patch.triangles(), u))
     {
-      set_up_problem(patch);
-      proposes = optimize(density);
+      set_up_problem(patch, samples);
+      proposes = optimize(patch, density);
     }
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -122,14 +125,15 @@ public:
 
 private:
   template <typename Density>
-  bool optimize(const Density& density)
+  bool optimize(const Patch& patch, const Density& density)
   {
     m_target = m_flattening.positions;
-    return m_optimizer.minimize(m_problem, density, m_target, m_parameters.newton_steps, 1e-8)
+    const Patch_elements<Density> elements{density, patch.elements};
+    return m_optimizer.minimize(m_problem, elements, m_target, m_parameters.newton_steps, 1e-8)
              .steps > 0;
   }
 
-  void set_up_problem(const Patch& patch)
+  void set_up_problem(const Patch& patch, const Patch_samples& samples)
   {
     const std::vector<Vector_2>& u = m_flattening.positions;
     m_problem.triples.clear();
@@ -152,15 +156,18 @@ private:
         Planar_problem::edges(u, e.vertices),
         signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
     }
-    find_motions(patch);
-    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_motions[v]; });
+    find_motions(patch, samples);
+    const auto motion = [&](int v) -> const Tangent_frame& { return m_motions[v]; };
+    m_problem.start = u;
+    m_problem.drift.collect(patch, samples, motion);
+    m_problem.stencils.collect(patch, motion);
   }
 
   // How vertices move along R when they move in the plane: the mean of the triangles around them, in
   // the tangent plane of R.
-  void find_motions(const Patch& patch)
+  void find_motions(const Patch& patch, const Patch_samples& samples)
   {
-    if(patch.samples.empty())
+    if(!samples.are_bounded() && patch.stencils.empty())
       return;
     const Indexed_mesh& triangles = patch.triangles();
     const std::vector<Vector_2>& u = m_flattening.positions;

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/numerics/projected_newton.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_terms.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
 
 #include <Eigen/Core>
 
@@ -29,6 +30,9 @@ struct Planar_problem
   std::vector<char> is_free;                // per vertex
   std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
   Drift_terms drift;
+  Stencil_terms stencils;
+  std::vector<Vector_2> start; // per vertex: where those terms were collected
+  const Vector_2& origin(int v) const { return start[v]; }
   // per vertex: the unit vector along which it slides, zero if it does not; empty if none does
   std::vector<Vector_2> slide_direction;
 

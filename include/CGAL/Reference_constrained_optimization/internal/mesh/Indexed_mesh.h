@@ -275,18 +275,18 @@ inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>
   return sum;
 }
 
-// vertices without faces may be anywhere, and count in neither of these
+// vertices without faces may be anywhere, and count in none of these
+inline Eigen::AlignedBox3d bounding_box(const Indexed_mesh& mesh,
+                                        const std::vector<Vector_3>& points)
+{
+  Eigen::AlignedBox3d box;
+  for(const int v : mesh.corner_vertex)
+    box.extend(points[v]);
+  return box;
+}
 inline double bounding_box_diagonal(const Indexed_mesh& mesh, const std::vector<Vector_3>& points)
 {
-  if(mesh.corner_vertex.empty())
-    return 0;
-  Vector_3 low = points[mesh.corner_vertex.front()], high = low;
-  for(const int v : mesh.corner_vertex)
-  {
-    low = low.cwiseMin(points[v]);
-    high = high.cwiseMax(points[v]);
-  }
-  return (high - low).norm();
+  return mesh.corner_vertex.empty() ? 0 : bounding_box(mesh, points).diagonal().norm();
 }
 
 // whether fourth powers of lengths, those of small edges too, stay in the range of double

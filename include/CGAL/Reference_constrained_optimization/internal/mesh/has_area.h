@@ -24,13 +24,20 @@ double height_at_corner(const Indexed_mesh& mesh, const PointAccess& point, int 
   return longest > 0 ? u.cross(v).norm() / longest : 0;
 }
 
-// Whether some face is more than a line, by more than rounding of the coordinates explains.
-// `point(v)` is the position of a vertex.
+// By how much coordinates may differ from what was meant; the origin that they were rounded with may be
+// that far away. `point(v)` is the position of a vertex.
 template <typename PointAccess>
-bool has_area(const Indexed_mesh& mesh, const PointAccess& point)
+double rounding_of(const Indexed_mesh& mesh, const PointAccess& point, double distance_of_origin)
 {
-  const double rounding =
-    4 * std::numeric_limits<double>::epsilon() * largest_coordinate(mesh, point);
+  return 4 * std::numeric_limits<double>::epsilon() *
+         (distance_of_origin + largest_coordinate(mesh, point));
+}
+
+// Whether some face is more than a line, by more than rounding of the coordinates explains.
+template <typename PointAccess>
+bool has_area(const Indexed_mesh& mesh, const PointAccess& point, double distance_of_origin = 0)
+{
+  const double rounding = rounding_of(mesh, point, distance_of_origin);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     if(height_at_corner(mesh, point, c) > rounding)
       return true;

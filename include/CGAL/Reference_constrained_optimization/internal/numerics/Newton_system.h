@@ -21,15 +21,19 @@ namespace internal {
 class Newton_system
 {
 public:
-  // `variable` numbers the free vertices and is -1 elsewhere; `triples` are the elements
+  // `variable` numbers the free vertices and is -1 elsewhere; `triples` are the elements, `pairs`
+  // variables that have a block without being in an element
   void analyze(const std::vector<int>& variable,
                int number_of_variables,
-               const std::vector<std::array<int, 3>>& triples)
+               const std::vector<std::array<int, 3>>& triples,
+               const std::vector<std::array<int, 2>>& pairs = {})
   {
     m_sides.clear();
     for(const auto& t : triples)
       for(int i = 0; i < 3; ++i)
         m_sides.push_back({{variable[t[i]], variable[t[(i + 1) % 3]]}});
+    m_first_pair = int(m_sides.size());
+    m_sides.insert(m_sides.end(), pairs.begin(), pairs.end());
     m_matrix.analyze(number_of_variables, m_sides);
   }
 
@@ -43,6 +47,12 @@ public:
   void add_side(int element, int side, int a, int b, const Eigen::Matrix2d& block)
   {
     m_matrix.add(3 * element + side, a, b, block);
+  }
+
+  // adds the block (rows a, columns b) of a pair, and its transpose
+  void add_pair(int pair, int a, int b, const Eigen::Matrix2d& block)
+  {
+    m_matrix.add(m_first_pair + pair, a, b, block);
   }
 
   // Solves for the right-hand side; the diagonal is shifted by a tiny part of its mean, which
@@ -66,6 +76,7 @@ public:
 private:
   Block_LDLT m_matrix;
   std::vector<std::array<int, 2>> m_sides; // variables at their ends
+  int m_first_pair = 0;
 };
 
 } // namespace internal

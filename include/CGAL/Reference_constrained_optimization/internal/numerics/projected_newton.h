@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace CGAL {
@@ -30,8 +31,10 @@ namespace internal {
 //
 // A problem has `triples` (elements), `rest_inverse`, `is_free` (per vertex), `shape(e, u)`, the edge
 // matrix of element e for coordinates u, and `corner_map(e, i)`, the matrix by which the i-th vertex
-// of element e moves when its coordinates do. A drift barrier is added to the energy: `drift`, a
-// Drift_terms, in triangles of the vertices `carriers`.
+// of element e moves when its coordinates do; `elements` gives value and derivatives of an element, by its
+// number or as a density for all. Added to the energy are `drift`, a Drift_terms, in triangles of the
+// vertices `carriers`, and `stencils`, a Stencil_terms; both for the displacement of vertices from
+// `origin(v)`.
 class Projected_newton
 {
 public:
@@ -62,8 +65,17 @@ public:
       m_first_carrier = int(m_triples.size());
       m_triples.insert(m_triples.end(), problem.carriers.begin(), problem.carriers.end());
     }
+    std::vector<std::array<int, 2>> pairs;
+    m_first_pair.clear();
+    for(const auto& term : problem.stencils.terms())
+    {
+      m_first_pair.push_back(int(pairs.size()));
+      for(int i = 0; i < term.size; ++i)
+        for(int j = 0; j < i; ++j)
+          pairs.push_back({{variable(term.vertices[i]), variable(term.vertices[j])}});
+    }
     if(m_size > 0)
-      m_system.analyze(m_variable, m_size, m_triples);
+      m_system.analyze(m_variable, m_size, m_triples, pairs);
     m_right.resize(2 * m_size);
   }
 
@@ -75,9 +87,9 @@ public:
   // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
   // energy by less than `tolerance` times what it would be if all elements were like the best: a few
   // that nothing can open may own the sum.
-  template <typename Problem, typename Density>
+  template <typename Problem, typename Elements>
   Outcome minimize(const Problem& problem,
-                   const Density& density,
+                   const Elements& elements,
                    std::vector<Vector_2>& u,
                    int maximum_steps,
                    double tolerance)
@@ -87,7 +99,7 @@ public:
       return outcome;
 
     check(m_interruption);
-    double energy = assemble(problem, density, u);
+    double energy = assemble(problem, elements, u);
     outcome.initial_energy = outcome.final_energy = energy;
     std::vector<Vector_2> moved(u);
     for(int step = 0; step < maximum_steps; ++step)
@@ -112,7 +124,7 @@ public:
           if(m_variable[i] >= 0)
             moved[i] = u[i] + t * m_direction.segment<2>(2 * m_variable[i]);
         check(m_interruption);
-        trial = value(problem, density, moved);
+        trial = value(problem, elements, moved);
         found = trial <= energy - 1e-4 * t * decrease;
         if(!found)
           t *= 0.5;
@@ -126,21 +138,56 @@ public:
       if(step + 1 == maximum_steps || gained < tolerance * m_scale)
         break;
       check(m_interruption);
-      assemble(problem, density, u);
+      assemble(problem, elements, u);
     }
     return outcome;
   }
 
 private:
-  template <typename Problem, typename Density>
+  // of an element by its number, or of a density
+  template <typename Elements>
+  static auto value_of(const Elements& elements, std::size_t e, const Eigen::Matrix2d& J, int)
+    -> decltype(elements.value(e, J))
+  {
+    return elements.value(e, J);
+  }
+  template <typename Density>
+  static double value_of(const Density& density, std::size_t, const Eigen::Matrix2d& J, long)
+  {
+    return density.value(J);
+  }
+  template <typename Elements>
+  static auto derivatives_of(const Elements& elements,
+                             std::size_t e,
+                             const Eigen::Matrix2d& J,
+                             Eigen::Vector4d& gradient,
+                             Eigen::Matrix4d& hessian,
+                             int) -> decltype(elements.value(e, J))
+  {
+    return elements.projected_derivatives(e, J, gradient, hessian);
+  }
+  template <typename Density>
+  static double derivatives_of(const Density& density,
+                               std::size_t,
+                               const Eigen::Matrix2d& J,
+                               Eigen::Vector4d& gradient,
+                               Eigen::Matrix4d& hessian,
+                               long)
+  {
+    return projected_derivatives(density, J, gradient, hessian, 0);
+  }
+
+  template <typename Problem, typename Elements>
   static double
-  value(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  value(const Problem& problem, const Elements& elements, const std::vector<Vector_2>& u)
   {
     double sum = 0;
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
-      sum += density.value(problem.shape(e, u) * problem.rest_inverse[e]);
+      sum += value_of(elements, e, problem.shape(e, u) * problem.rest_inverse[e], 0);
     for(const auto& term : problem.drift.terms())
       sum += problem.drift.barrier().value(distance(problem, term, u), term.bound);
+    for(const auto& term : problem.stencils.terms())
+      sum += problem.stencils.value(term, displacement(problem, u));
     return sum;
   }
 
@@ -151,13 +198,21 @@ private:
     const std::array<int, 3>& t = problem.carriers[term.triangle];
     double d = term.distance;
     for(int k = 0; k < 3; ++k)
-      d += term.rows[k].dot(u[t[k]]);
+      d += term.rows[k].dot(u[t[k]] - problem.origin(t[k]));
     return d;
   }
 
+  template <typename Problem>
+  static auto displacement(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    return [&](int v) { return Vector_2(u[v] - problem.origin(v)); };
+  }
+
+  int variable(int v) const { return v < 0 ? -1 : m_variable[v]; }
+
   // matrix and right-hand side (the negative gradient) at u; returns the energy
-  template <typename Problem, typename Density>
-  double assemble(const Problem& problem, const Density& density, const std::vector<Vector_2>& u)
+  template <typename Problem, typename Elements>
+  double assemble(const Problem& problem, const Elements& elements, const std::vector<Vector_2>& u)
   {
     m_system.set_zero();
     m_right.setZero();
@@ -177,10 +232,10 @@ private:
       const int variable[3] = {m_variable[t[0]], m_variable[t[1]], m_variable[t[2]]};
       if(variable[0] < 0 && variable[1] < 0 && variable[2] < 0)
       {
-        add(density.value(J));
+        add(value_of(elements, e, J, 0));
         continue;
       }
-      add(projected_derivatives(density, J, gradient, hessian, 0));
+      add(derivatives_of(elements, e, J, gradient, hessian, 0));
       hessian.diagonal().array() += m_strain_resistance * hessian.trace();
 
       // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
@@ -207,7 +262,39 @@ private:
       }
     }
     m_scale = least * double(problem.triples.size());
-    return sum + add_drift(problem, u);
+    return sum + add_drift(problem, u) + add_stencils(problem, u);
+  }
+
+  // returns the energy
+  template <typename Problem>
+  double add_stencils(const Problem& problem, const std::vector<Vector_2>& u)
+  {
+    double sum = 0;
+    typedef std::decay_t<decltype(problem.stencils)> Stencils;
+    typename Stencils::Gradient gradient;
+    typename Stencils::Hessian hessian;
+    for(std::size_t s = 0; s < problem.stencils.terms().size(); ++s)
+    {
+      const auto& term = problem.stencils.terms()[s];
+      sum += problem.stencils.derivatives(term, displacement(problem, u), gradient, hessian);
+      int pair = m_first_pair[s];
+      for(int i = 0; i < term.size; ++i)
+      {
+        const int a = variable(term.vertices[i]);
+        if(a >= 0)
+        {
+          m_right.segment<2>(2 * a) -= gradient.template segment<2>(2 * i);
+          m_system.add_diagonal(a, hessian.template block<2, 2>(2 * i, 2 * i));
+        }
+        for(int j = 0; j < i; ++j, ++pair)
+        {
+          const int b = variable(term.vertices[j]);
+          if(a >= 0 && b >= 0)
+            m_system.add_pair(pair, a, b, hessian.template block<2, 2>(2 * i, 2 * j));
+        }
+      }
+    }
+    return sum;
   }
 
   // Gauss and Newton's Hessian; returns the energy
@@ -306,6 +393,7 @@ private:
   int m_size = 0;
   int m_first_carrier = 0;                   // number of the first carrier among the triples
   std::vector<std::array<int, 3>> m_triples; // of the system
+  std::vector<int> m_first_pair;             // per stencil
   double m_strain_resistance = 0;
   double m_scale = 0; // of the energy, for tolerances
   Newton_system m_system;

@@ -6,20 +6,21 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_OBJECTIVE_ANGLE_BARRIER_DENSITY_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/numerics/projected_derivatives.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Element_densities.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A density with a barrier on the angles of the triangle on top, for elements whose rest triangle is
-// equilateral: each angle a adds W exp(k (t - a)), t being the target, in degrees, k the steepness and
-// W the density at rest. Beyond an exponent of 6 the exponential goes on as its second-order Taylor
+// Densities (Element_densities) with a barrier on top on the angles of the elements that are judged by them: each angle a adds W exp(k (t - a)), t being the
+// target, in degrees, k the steepness and W the element's density at rest. The rest triangle is equilateral
+// or as good as: angles are taken from the Jacobian. Beyond an exponent of 6 the exponential goes on as its second-order Taylor
 // polynomial, so that a sharp triangle does not own the sum; angles far above the target add nothing.
 template <typename Density>
 class Angle_barrier_density
@@ -28,9 +29,11 @@ public:
   Angle_barrier_density(const Density& density, double target, double steepness)
     : m_density(density),
       m_target(target),
-      m_steepness(steepness),
-      m_weight(density.value(Eigen::Matrix2d::Identity()))
+      m_steepness(steepness)
   {
+    for(int term = 0; term < density.number_of_terms(); ++term)
+      density.visit(
+        term, [&](const auto& d) { m_weights.push_back(d.value(Eigen::Matrix2d::Identity())); });
     m_equilateral << 1, 0.5, 0, std::sqrt(0.75);
     const double negligible = 20; // exponent
     m_negligible_cosine =
@@ -39,27 +42,34 @@ public:
 
   double target() const { return m_target; }
 
-  double value(const Eigen::Matrix2d& J) const
+  double value(const Element_set::Element& element, const Eigen::Matrix2d& J) const
   {
+    double sum = m_density.value(element, J);
+    if(!element.is_judged)
+      return sum;
     const Angles angles(J * m_equilateral);
-    double sum = m_density.value(J);
+    const double weight = element.weight * m_weights[element.term];
     for(int i = 0; i < 3; ++i)
       if(angles.cosine(i) > m_negligible_cosine)
-        sum += barrier(angles.value(i)).value;
+        sum += barrier(angles.value(i), weight).value;
     return sum;
   }
 
-  double projected_derivatives(const Eigen::Matrix2d& J,
+  double projected_derivatives(const Element_set::Element& element,
+                               const Eigen::Matrix2d& J,
                                Eigen::Vector4d& gradient,
                                Eigen::Matrix4d& hessian) const
   {
-    double sum = internal::projected_derivatives(m_density, J, gradient, hessian, 0);
+    double sum = m_density.projected_derivatives(element, J, gradient, hessian);
+    if(!element.is_judged)
+      return sum;
     const Angles angles(J * m_equilateral);
+    const double weight = element.weight * m_weights[element.term];
     for(int i = 0; i < 3; ++i)
     {
       if(!(angles.cosine(i) > m_negligible_cosine))
         continue;
-      const Jet b = barrier(angles.value(i));
+      const Jet b = barrier(angles.value(i), weight);
       const Eigen::Matrix2d by_jacobian = angles.derivative(i) * m_equilateral.transpose();
       const Eigen::Map<const Eigen::Vector4d> d(by_jacobian.data());
       sum += b.value;
@@ -127,16 +137,17 @@ private:
     double value, first, second; // by the angle
   };
 
-  Jet barrier(double angle) const
+  Jet barrier(double angle, double weight) const
   {
     const double cap = 6, x = m_steepness * (m_target - angle);
-    const double e = m_weight * std::exp(x < cap ? x : cap);
+    const double e = weight * std::exp(x < cap ? x : cap);
     const double h = x < cap ? 0 : x - cap;
     return {e * (1 + h * (1 + 0.5 * h)), -m_steepness * e * (1 + h), m_steepness * m_steepness * e};
   }
 
   const Density& m_density;
-  double m_target, m_steepness, m_weight, m_negligible_cosine = 1;
+  double m_target, m_steepness, m_negligible_cosine = 1;
+  std::vector<double> m_weights; // per term: the density at rest
   Eigen::Matrix2d m_equilateral;
 };
 

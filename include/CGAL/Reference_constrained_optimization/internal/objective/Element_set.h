@@ -7,11 +7,13 @@
 
 #include <CGAL/Reference_constrained_optimization/Energy_element.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/canonical_frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/numerics/projected_derivatives.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/summands.h>
 
 #include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,53 +28,69 @@ public:
   struct Element
   {
     std::array<int, 3> vertices;
-    bool is_in_quad;                                            // its face has more corners than it
+    bool is_judged;  // by the energy's criterion for elements
+    bool is_in_quad; // its face has more corners than it
+    short term = 0;  // the summand of the energy that it is of
+    double weight = 1;
     Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
 
-  // of the faces that are marked; of all if there are no marks
-  template <typename Energy>
+  // of the faces that are marked; of all if there are no marks. Lengths of rest triangles are told in
+  // another unit: `unit` of these make one of the mesh.
+  template <typename Energy, typename Context>
   Element_set(const Energy& energy,
-              const Energy_context& context,
+              const Context& context,
               const std::vector<char>& is_in_range = std::vector<char>(),
-              const Canonical_frame& frame = Canonical_frame())
+              double unit = 1)
   {
+    // calls visit(summand, term, weight) for each that has elements and counts
+    const auto for_each_term = [&](const auto& visit) {
+      short term = 0;
+      for_each_summand(energy, 1, [&](const auto& summand, double weight) {
+        if constexpr(Has_elements<std::decay_t<decltype(summand)>>::value)
+        {
+          if(weight > 0)
+            visit(summand, term, weight);
+          ++term;
+        }
+      });
+    };
+    m_criterion = criterion_of(energy);
     const std::size_t n = context.number_of_faces();
     m_begin.reserve(n + 1);
     m_begin.push_back(0);
     std::vector<Energy_element> elements;
     for(std::size_t f = 0; f < n; ++f)
     {
-      elements.clear();
       if(!is_in_range.empty() && !is_in_range[f])
       {
         m_begin.push_back(int(m_elements.size()));
         continue;
       }
-      energy.append_elements(context, f, elements);
-      for(const Energy_element& e : elements)
-      {
-        const double det = e.rest.determinant();
-        if(!(det > 0) || !std::isfinite(det))
-          throw Invalid_input("energy: the rest triangle of an element of face " +
-                              std::to_string(f) + " does not have a positive area");
-        Element element;
-        for(int i = 0; i < 3; ++i)
-        {
-          if(e.corners[i] < 0 || e.corners[i] >= context.degree(f))
-            throw Invalid_input("energy: an element of face " + std::to_string(f) +
-                                " names a corner that the face does not have");
-          element.vertices[i] = context.vertex(f, e.corners[i]);
-        }
-        const Eigen::Matrix2d rest = e.rest.unaryExpr([&](double x) { return frame.length(x); });
-        element.rest_inverse = rest.inverse();
-        element.is_in_quad = context.degree(f) > 3;
-        m_elements.push_back(element);
-      }
+      for_each_term([&](const auto& summand, short term, double weight) {
+        elements.clear();
+        summand.append_elements(context, f, elements);
+        for(const Energy_element& e : elements)
+          append(e, Criterion_of<std::decay_t<decltype(summand)>>::value, term, weight, context, f,
+                 unit);
+      });
       m_begin.push_back(int(m_elements.size()));
     }
     if(m_elements.empty() && is_in_range.empty())
-      throw Invalid_input("energy: the mesh has no element");
+      throw Invalid_input(
+        "energy: the mesh has no element; stencils alone do not keep faces in shape");
+  }
+
+  // by what the worst elements are judged
+  Element_criterion criterion() const { return m_criterion; }
+
+  // the sum of the weights of the elements of a term
+  double weight_of_term(int term) const
+  {
+    double sum = 0;
+    for(const Element& e : m_elements)
+      sum += e.term == term ? e.weight : 0;
+    return sum;
   }
 
   int begin(int f) const { return m_begin[f]; }
@@ -81,9 +99,77 @@ public:
   int size() const { return int(m_elements.size()); }
 
 private:
+  void append(const Energy_element& e,
+              Element_criterion criterion,
+              short term,
+              double weight,
+              const Energy_context& context,
+              std::size_t f,
+              double unit)
+  {
+    const std::string name = " of an element of face " + std::to_string(f);
+    const double det = e.rest.determinant();
+    if(!(det > 0) || !std::isfinite(det))
+      throw Invalid_input("energy: the rest triangle" + name + " does not have a positive area");
+    if(!(e.weight > 0) || !std::isfinite(e.weight))
+      throw Invalid_input("energy: the weight" + name + " is not positive and finite");
+    Element element;
+    for(int i = 0; i < 3; ++i)
+    {
+      if(e.corners[i] < 0 || e.corners[i] >= context.degree(f))
+        throw Invalid_input("energy: an element of face " + std::to_string(f) +
+                            " names a corner that the face does not have");
+      element.vertices[i] = context.vertex(f, e.corners[i]);
+    }
+    element.rest_inverse = (e.rest / unit).inverse();
+    element.is_judged = criterion != Element_criterion::none;
+    element.is_in_quad = context.degree(f) > 3;
+    element.term = term;
+    element.weight = weight * e.weight;
+    m_elements.push_back(element);
+  }
+
+  Element_criterion m_criterion = Element_criterion::none;
   std::vector<int> m_begin;
   std::vector<Element> m_elements;
 };
+
+// The density of an element at a Jacobian, and its derivatives: of densities that depend on the element, and
+// of those that do not.
+template <typename Density>
+auto element_value(const Density& density,
+                   const Element_set::Element& element,
+                   const Eigen::Matrix2d& J,
+                   int) -> decltype(density.value(element, J))
+{
+  return density.value(element, J);
+}
+template <typename Density>
+double
+element_value(const Density& density, const Element_set::Element&, const Eigen::Matrix2d& J, long)
+{
+  return density.value(J);
+}
+template <typename Density>
+auto element_derivatives(const Density& density,
+                         const Element_set::Element& element,
+                         const Eigen::Matrix2d& J,
+                         Eigen::Vector4d& gradient,
+                         Eigen::Matrix4d& hessian,
+                         int) -> decltype(density.value(element, J))
+{
+  return density.projected_derivatives(element, J, gradient, hessian);
+}
+template <typename Density>
+double element_derivatives(const Density& density,
+                           const Element_set::Element&,
+                           const Eigen::Matrix2d& J,
+                           Eigen::Vector4d& gradient,
+                           Eigen::Matrix4d& hessian,
+                           long)
+{
+  return projected_derivatives(density, J, gradient, hessian, 0);
+}
 
 } // namespace internal
 } // namespace Reference_constrained_optimization

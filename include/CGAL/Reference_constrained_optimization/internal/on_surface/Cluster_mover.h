@@ -6,7 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_CLUSTER_MOVER_H
 
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
-#include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/Patch_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ public:
   explicit Cluster_mover(const Reference_surface& reference) : m_reference(reference) {}
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density&)
+  bool propose(const Patch& patch, const Patch_samples&, const Density&)
   {
     const auto start = std::chrono::steady_clock::now();
     m_way.assign(patch.vertices.size(), Vector_3::Zero());
@@ -100,7 +100,7 @@ public:
   }
 
   template <typename Density>
-  bool propose_again(const Patch&, const std::vector<double>&, const Density&)
+  bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
   {
     return false;
   }

@@ -7,11 +7,13 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/numerics/projected_newton.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Element_densities.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/crease_direction.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_terms.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
 
@@ -38,6 +40,8 @@ struct Tangent_problem
   std::vector<char> is_free;                // per vertex
   std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
   Drift_terms drift;
+  Stencil_terms stencils;
+  static Vector_2 origin(int) { return Vector_2::Zero(); }
 
   std::vector<Eigen::Matrix2d> shapes;      // at u = 0
   std::vector<Eigen::Matrix2d> corner_maps; // three per element
@@ -84,7 +88,7 @@ public:
   void set_strain_resistance(double part) { m_first_resistance = part; }
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density& density)
+  bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     m_optimization_time = 0;
     const auto start = std::chrono::steady_clock::now();
@@ -96,27 +100,31 @@ public:
       m_problem.triples.push_back(e.vertices);
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
-    m_problem.carriers = drift_carriers(patch);
+    m_problem.carriers = drift_carriers(patch, samples);
+    m_problem.stencils.collect(patch, [](int) -> Tangent_frame { return Tangent_frame::Zero(); });
     check(m_interruption);
     m_newton.analyze(m_problem);
     check(m_interruption);
     m_strain_resistance = m_first_resistance;
-    m_is_held.assign(patch.vertices.size(), !patch.samples.empty());
-    const bool proposes = step(patch, density);
+    m_is_held.assign(patch.vertices.size(), samples.are_bounded());
+    const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
   }
 
   // from where the vertices are now
   template <typename Density>
-  bool propose_again(const Patch& patch, const std::vector<double>& steps, const Density& density)
+  bool propose_again(const Patch& patch,
+                     const Patch_samples& samples,
+                     const std::vector<double>& steps,
+                     const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
     adapt(patch, steps);
     // what went off its crease without much harm may go on
     for(std::size_t v = 0; v < steps.size(); ++v)
-      m_is_held[v] = !patch.samples.empty() && steps[v] < 0.5;
-    const bool proposes = step(patch, density);
+      m_is_held[v] = samples.are_bounded() && steps[v] < 0.5;
+    const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
   }
@@ -138,13 +146,13 @@ public:
 private:
   // Newton steps from where the vertices are now
   template <typename Density>
-  bool step(const Patch& patch, const Density& density)
+  bool step(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
-    linearize(patch, density);
+    linearize(patch, samples, density);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
     m_newton.set_strain_resistance(m_strain_resistance);
-    const Projected_newton::Outcome outcome =
-      m_newton.minimize(m_problem, density, m_motion, m_newton_steps, 1e-8);
+    const Projected_newton::Outcome outcome = m_newton.minimize(
+      m_problem, Patch_elements<Density>{density, patch.elements}, m_motion, m_newton_steps, 1e-8);
     m_promised = outcome.promised;
     return outcome.steps > 0;
   }
@@ -161,7 +169,7 @@ private:
   }
 
   template <typename Density>
-  void linearize(const Patch& patch, const Density& density)
+  void linearize(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     find_planes(patch);
     find_descent(patch, density);
@@ -192,7 +200,9 @@ private:
       for(int i = 0; i < 3; ++i)
         m_problem.corner_maps[3 * e + i] =
           m_planes[e].transpose() * m_frames[patch.elements[e].vertices[i]];
-    m_problem.drift.collect(patch, [&](int v) -> const Tangent_frame& { return m_frames[v]; });
+    const auto frame = [&](int v) -> const Tangent_frame& { return m_frames[v]; };
+    m_problem.drift.collect(patch, samples, frame);
+    m_problem.stencils.collect(patch, frame);
   }
 
   // the planes of the elements, and their shapes there
@@ -236,8 +246,8 @@ private:
       const std::array<int, 3>& t = element.vertices;
       if(!is_on_edge(t[0]) && !is_on_edge(t[1]) && !is_on_edge(t[2]))
         continue;
-      projected_derivatives(density, m_problem.shapes[e] * element.rest_inverse, gradient, unused,
-                            0);
+      element_derivatives(density, element, m_problem.shapes[e] * element.rest_inverse, gradient,
+                          unused, 0);
       const Eigen::Matrix2d by_jacobian = Eigen::Map<const Eigen::Matrix2d>(gradient.data());
       const Eigen::Matrix<double, 3, 2> by_edges =
         m_planes[e] * (by_jacobian * element.rest_inverse.transpose());
@@ -245,6 +255,7 @@ private:
       m_descent[t[1]] -= by_edges.col(0);
       m_descent[t[2]] -= by_edges.col(1);
     }
+    m_problem.stencils.add_descent(m_descent);
   }
 
   const Reference_surface& m_reference;

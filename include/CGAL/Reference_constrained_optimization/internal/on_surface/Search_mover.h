@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
-#include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/drift_samples.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
 
@@ -46,9 +46,10 @@ public:
   }
 
   template <typename Density>
-  bool propose(const Patch& patch, const Density& density)
+  bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     const auto start = std::chrono::steady_clock::now();
+    m_samples = &samples;
     m_placed = patch.placed;
     const bool moves = search(patch, density);
     m_optimization_time = seconds_since(start);
@@ -56,7 +57,7 @@ public:
   }
 
   template <typename Density>
-  bool propose_again(const Patch&, const std::vector<double>&, const Density&)
+  bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>&, const Density&)
   {
     return false;
   }
@@ -99,6 +100,8 @@ private:
     for(const int f : m_star)
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         sum += element_energy(density, patch.elements[e], vertex);
+    for(const int s : m_star_stencils)
+      sum += patch.value(patch.stencils[s], m_placed);
     return sum;
   }
 
@@ -110,11 +113,10 @@ private:
     for(const int f : m_star)
     {
       const Vector_3 normal = face_normal(mesh, vertex, f);
-      count += is_flipped(mesh, vertex, f, normal, patch.caution) + is_nonconvex(mesh, vertex, f);
+      count += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0)
-          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]),
-                             patch.caution);
+          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]));
     }
     return count;
   }
@@ -122,11 +124,11 @@ private:
   Star_measure drift(const Patch& patch) const
   {
     Star_measure m;
-    if(patch.samples.empty())
+    if(!m_samples->are_bounded())
       return m;
     const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
     const auto add = [&](double distance, double bound) {
-      m.energy += patch.barrier.value(distance, bound);
+      m.energy += m_samples->barrier.value(distance, bound);
       m.defects += distance > Drift_barrier::last_part * bound;
     };
     for(const int t : m_triangles)
@@ -136,13 +138,13 @@ private:
         const int s = sample_of(patch, t, i);
         if(s < 0)
           continue;
-        Patch::Sample sample = patch.samples[s];
-        locate_sample(patch, m_reference, vertex, s, sample);
+        Patch_samples::Sample sample = m_samples->samples[s];
+        locate_sample(patch, *m_samples, m_reference, vertex, s, sample);
         add(sample.distance, sample.bound);
       }
       for(const int g : m_guests[patch.polygon_of(t)])
       {
-        Patch::Guest guest = patch.guests[g];
+        Patch_samples::Guest guest = m_samples->guests[g];
         locate_guest(patch, m_reference, vertex, guest);
         add(guest.distance, guest.bound);
       }
@@ -166,13 +168,22 @@ private:
     };
     collect(patch.polygons, m_star);
     collect(patch.triangles(), m_triangles);
+    m_star_stencils.clear();
+    for(std::size_t s = 0; s < patch.stencils.size(); ++s)
+      for(int i = 0; i < patch.stencils[s].size; ++i)
+        if(std::find(vertices.begin(), vertices.end(), patch.stencils[s].vertices[i]) !=
+           vertices.end())
+        {
+          m_star_stencils.push_back(int(s));
+          break;
+        }
   }
 
   void sort_guests(const Patch& patch)
   {
     m_guests.assign(patch.polygons.number_of_faces(), {});
-    for(std::size_t g = 0; g < patch.guests.size(); ++g)
-      m_guests[patch.guests[g].polygon].push_back(int(g));
+    for(std::size_t g = 0; g < m_samples->guests.size(); ++g)
+      m_guests[m_samples->guests[g].polygon].push_back(int(g));
   }
 
   // vertices that move at once, and how far they look
@@ -371,9 +382,11 @@ private:
   Interruption* m_interruption;
   double m_bad = std::numeric_limits<double>::infinity();
   double m_sharp = 1;
+  const Patch_samples* m_samples = nullptr;
   std::vector<Placed_vertex> m_placed;
-  std::vector<std::vector<int>> m_guests;           // per polygon
-  std::vector<int> m_star, m_triangles;             // around the vertices that move
+  std::vector<std::vector<int>> m_guests; // per polygon
+  // around the vertices that move: faces, triangles, and stencils of the patch
+  std::vector<int> m_star, m_triangles, m_star_stencils;
   std::vector<Placed_vertex> m_here, m_best_places; // of these
   std::vector<Group> m_groups;
   std::vector<double> m_length; // per vertex: of its way

@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/connected_region.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/has_area.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/point_index.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
@@ -139,14 +140,13 @@ void place_on_reference(const std::vector<Vector_3>& points,
                         Optimization_state& state,
                         Result& result,
                         Interruption* interruption = nullptr,
-                        const Canonical_frame& frame = Canonical_frame())
+                        double distance_of_origin = 0)
 {
   const Indexed_mesh& mesh = state.mesh;
   // a vertex this close is on R already, and keeps its bits
-  const double largest =
-    largest_coordinate(mesh, [&](int v) -> const Vector_3& { return points[v]; });
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
-  const double touching = 1e-12 * reference.diagonal() + rounding + 2 * frame.resolution();
+  const double rounding = rounding_of(
+    mesh, [&](int v) -> const Vector_3& { return points[v]; }, distance_of_origin);
+  const double touching = 1e-12 * reference.diagonal() + rounding;
 
   const Indexed_mesh& surface = reference.mesh();
   const auto is_used = [&](int v) { return !surface.is_isolated(v); };
@@ -239,10 +239,10 @@ void place_on_reference(const std::vector<Vector_3>& points,
   orient();
 }
 
-// Refuses a mesh that is not close to R, but for what is not to be optimized of it.
-inline void check_distances(const std::vector<Vector_3>& points,
-                            const Optimization_state& state,
-                            const Canonical_frame& frame)
+// Refuses a mesh that is not close to R, but for what is not to be optimized of it. `unit` is that of
+// lengths, for the message.
+inline void
+check_distances(const std::vector<Vector_3>& points, const Optimization_state& state, double unit)
 {
   const double limit = 0.1 * state.reference.diagonal();
   for(std::size_t v = 0; v < points.size(); ++v)
@@ -250,10 +250,9 @@ inline void check_distances(const std::vector<Vector_3>& points,
     if(!state.has_face_that_counts(int(v)))
       continue;
     const double distance = (state.vertices[v].on_reference.position - points[v]).norm();
-    if(distance > limit)
-      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " +
-                          text_of(distance * frame.unit()) +
-                          " away from the reference, but at most " + text_of(limit * frame.unit()) +
+    if(!(distance <= limit))
+      throw Invalid_input("mesh: vertex " + std::to_string(v) + " is " + text_of(distance * unit) +
+                          " away from the reference, but at most " + text_of(limit * unit) +
                           ", a tenth of the reference's diagonal, is allowed");
   }
 }

@@ -35,11 +35,12 @@ public:
                    const Constraints& constraints,
                    const Reference_lines& lines,
                    bool relaxes_border,
-                   double resolution,
+                   double rounding,
                    Result& result)
     : m_state(state),
       m_cosine_of_sharp_turn(result.number_of_feature_edges > 0 ? cosine_on_parts : 0.5),
-      m_touching((std::max)(1e-9 * state.reference.diagonal(), 4 * resolution)),
+      m_rounding(rounding),
+      m_touching((std::max)(1e-9 * state.reference.diagonal(), rounding)),
       m_result(result)
   {
     const Indexed_mesh& mesh = state.mesh;
@@ -167,19 +168,22 @@ private:
   void release(int v, const Line_point& where)
   {
     Placed_vertex& placed = m_state.vertices[v];
+    const Vector_3 before = placed.position;
     placed.on_line = where;
     if(!place_on_line(m_state.lines, m_state.reference, placed))
     {
       placed.on_line = Line_point();
       return;
     }
+    if((placed.position - before).norm() <= m_rounding)
+      placed.position = before; // it is on its line already, and keeps its bits
     m_state.is_free[v] = 1;
     ++m_result.number_of_free_vertices;
   }
 
   Optimization_state& m_state;
   double m_cosine_of_sharp_turn;
-  double m_touching;
+  double m_rounding, m_touching;
   Result& m_result;
 };
 

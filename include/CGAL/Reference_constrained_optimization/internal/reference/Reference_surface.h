@@ -45,7 +45,7 @@ class Reference_surface
   typedef std::vector<Kernel::Segment_3>::const_iterator Segment_iterator;
 
 public:
-  explicit Reference_surface(const Mesh_copy& copy)
+  explicit Reference_surface(const Mesh_copy& copy, double distance_of_origin = 0)
     : m_points(copy.points),
       m_search(std::make_unique<Search>())
   {
@@ -54,7 +54,8 @@ public:
     if(m_diagonal > 0 && !is_safe_diagonal(m_diagonal))
       throw Invalid_input("reference: its diagonal is not between 1e-60 and 1e60: other units of "
                           "length are needed");
-    if(!has_area(m_mesh, [this](int v) -> const Vector_3& { return m_points[v]; }))
+    if(!has_area(
+         m_mesh, [this](int v) -> const Vector_3& { return m_points[v]; }, distance_of_origin))
       throw Invalid_input("reference: every face has zero area");
     compute_normals();
     find_creases();

@@ -20,13 +20,9 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 100;
-  double drift_bound = -1;        // a length; negative: see Outer_loop::make_drift_guard
-  double default_drift_bound = 0; // a length
+  double drift_bound = -1; // a length; negative: see Patch_visits::make_drift_guard
   // decrease per iteration, relative to what the energy has above that of elements at rest
   double energy_tolerance = 4e-3;
-  // Part of the mean edge length at a vertex: where all around move less it is calm. Small ways of many
-  // together may lead far, which is why two rings are looked at.
-  double movement_tolerance = 0.02;
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
   int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last
@@ -38,9 +34,8 @@ struct Loop_parameters
   bool relax_constraints = false;
   bool detect_features = true; // where the caller constrains no edges
   bool use_on_surface_steps = true;
-  int on_surface_newton_steps = 1; // per proposal
-  bool use_active_set = true;      // else every iteration visits the whole mesh
-  bool accepts_all = false;        // whatever was mapped back is kept, better or not
+  bool use_active_set = true; // else every iteration visits the whole mesh
+  bool accepts_all = false;   // whatever was mapped back is kept, better or not
 };
 
 // Sizes are counted in triangles: a quad is two.
@@ -64,13 +59,13 @@ inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
 // Where steps on the surface follow, what is laid flat for the sake of sharp triangles is no larger than
 // it takes to mend them; stretched elements are a matter of what is around them.
 inline Selection_parameters
-sized(const Loop_parameters& parameters, const Indexed_mesh& mesh, bool prizes_angles)
+sized(const Loop_parameters& parameters, const Indexed_mesh& mesh, bool judges_angles)
 {
   Selection_parameters selection = parameters.selection;
   // steps on the surface come by everywhere afterwards
   selection.visits_all_well = !parameters.use_on_surface_steps;
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = parameters.use_on_surface_steps && prizes_angles
+    selection.maximum_patch_size = parameters.use_on_surface_steps && judges_angles
                                      ? patch_size(mesh, 1.2, 150)
                                      : patch_size(mesh, 4.5, 400);
   return selection;

@@ -44,7 +44,6 @@ public:
                Result& result,
                Interruption& interruption)
     : m_state(state),
-      m_movement_tolerance(parameters.movement_tolerance),
       m_visitor(visitor),
       m_result(result),
       m_interruption(interruption),
@@ -84,7 +83,7 @@ public:
   bool solve(const std::vector<std::vector<int>>& patches,
              Moves moves,
              const Density& density,
-             const Acceptance_test::Limits& limits)
+             const Solver_settings& settings)
   {
     m_visitor.on_round_begin(patches.size());
     ++m_result.number_of_rounds;
@@ -96,7 +95,7 @@ public:
           return;
         try
         {
-          solver.solve(patches[i], m_state, density, limits, m_drift_guard, moves, solved[i]);
+          solver.solve(patches[i], m_state, density, settings, m_drift_guard, moves, solved[i]);
         }
         catch(const Interrupted&)
         {
@@ -112,6 +111,10 @@ public:
   }
 
 private:
+  // Part of the mean edge length at a vertex: where all around move less it is at rest. Small ways of many
+  // together may lead far, which is why two rings are looked at.
+  static constexpr double movement_tolerance = 0.02;
+
   // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
   // vertices
   void update(const Solved_patch& s)
@@ -122,13 +125,13 @@ private:
       {
         const int v = patch.vertices[i];
         const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
-        if(moved > m_movement_tolerance * m_edge_length[v])
+        if(moved > movement_tolerance * m_edge_length[v])
           m_progress.moved[v] = 1;
       }
     for(const int f : patch.faces)
       m_geometry.set(m_state.mesh, f,
                      [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(patch.faces, patch.guests, s.samples);
+    m_drift_guard.take_back(patch.faces, s.guests, s.samples);
   }
 
   void report(const Solved_patch& s)
@@ -172,7 +175,6 @@ private:
   }
 
   Optimization_state& m_state;
-  double m_movement_tolerance;
   Visitor& m_visitor;
   Result& m_result;
   Interruption& m_interruption;

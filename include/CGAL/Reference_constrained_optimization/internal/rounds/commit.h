@@ -22,8 +22,18 @@ inline int boundary_folds(const Optimization_state& state, const Solved_patch& s
   int count = 0;
   for(const std::array<int, 2>& faces : s.boundary)
     count += is_folded(face_normal(state.mesh, vertex, faces[0]),
-                       face_normal(state.mesh, vertex, faces[1]), state.caution);
+                       face_normal(state.mesh, vertex, faces[1]));
   return count;
+}
+
+// the energy of the stencils that other patches may have changed, as the state is now
+inline double shared_energy(const Optimization_state& state, const Solved_patch& s)
+{
+  double sum = 0;
+  for(const int stencil : s.shared_stencils)
+    sum += state.stencils.value_at(
+      stencil, [&](int v) -> const Vector_3& { return state.vertices[v].position; });
+  return sum;
 }
 
 // swaps some vertices of a patch, given by their local indices, with those of the state
@@ -35,18 +45,24 @@ exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& loc
 }
 
 // Decides whether an accepted patch stays. Another patch of the round may have moved faces across its
-// boundary since it was judged: what folds there is counted anew. Only the vertices that other patches
+// boundary since it was judged: what folds there is counted anew,
+// and stencils across it are evaluated. Only the vertices that other patches
 // see are exchanged; `commit_inside()` has to follow if it stays.
 inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)
     return;
   const int folds_before = boundary_folds(state, s);
+  const double shared_before = shared_energy(state, s);
   exchange(state, s, s.outer_vertices);
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
   const int change =
     after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
-  const bool is_better = change < 0 || (change == 0 && after.energy < before.energy);
+  // what is not shared has changed as the patch was judged
+  const double rise = s.shared_stencils.empty() ? 0
+                                                : shared_energy(state, s) - shared_before -
+                                                    (after.shared_energy - before.shared_energy);
+  const bool is_better = change < 0 || (change == 0 && after.energy + rise < before.energy);
   if(!is_better && !s.decision.is_final)
   {
     exchange(state, s, s.outer_vertices);

@@ -9,7 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/On_surface_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/Search_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
-#include <CGAL/Reference_constrained_optimization/internal/rounds/acceptance.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,16 +28,28 @@ namespace internal {
 // how a patch is moved
 enum class Moves { flattened, on_surface, by_search, opening };
 
+// What patches are solved with; it changes between iterations.
+struct Solver_settings
+{
+  Step_limits limits;
+  double bad_density = 0;                                          // of an element beyond it
+  double search_density = std::numeric_limits<double>::infinity(); // elements beyond it, or with
+  double search_cosine = 1;     // the cosine of an angle beyond it, are what a search is for
+  double strain_resistance = 0; // where Newton steps on the surface begin
+};
+
 // What is known of a patch after it was solved. All patches of a round are kept until it ends: what
 // only the solver needs is dropped.
 struct Solved_patch
 {
-  Patch patch; // its faces, vertices and guests
+  Patch patch; // its faces and vertices
+  std::vector<Patch_samples::Guest> guests;
   Drift_guard::Known_samples samples;
   std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
-  // the free vertices, in local indices: those of faces at the boundary, and the others
+  std::vector<int> shared_stencils;         // that depend on vertices which others may move
+  // the free vertices, in local indices: those that other patches see, and the others
   std::vector<int> outer_vertices, inner_vertices;
-  Acceptance_test::Decision decision;
+  Backtracking::Decision decision;
   std::vector<Placed_vertex> placed;
   Flattening_path path = Flattening_path::failed;
   bool was_tried = false; // has free vertices
@@ -52,8 +65,10 @@ struct Solved_patch
   void drop_vertices()
   {
     patch = Patch();
+    guests = std::vector<Patch_samples::Guest>();
     samples = Drift_guard::Known_samples();
     boundary = std::vector<std::array<int, 2>>();
+    shared_stencils = std::vector<int>();
     outer_vertices = std::vector<int>();
     inner_vertices = std::vector<int>();
     placed = std::vector<Placed_vertex>();
@@ -71,10 +86,10 @@ public:
     : m_interruption(interruption),
       m_builder(state.mesh),
       m_flattened_mover(state.reference, parameters.mover, interruption),
-      m_on_surface_mover(state.reference, parameters.on_surface_newton_steps, interruption),
+      m_on_surface_mover(state.reference, 1, interruption),
       m_search_mover(state.reference, interruption),
       m_cluster_mover(state.reference),
-      m_acceptance(interruption),
+      m_backtracking(interruption),
       m_flattened_proposals(parameters.proposals_per_patch),
       m_on_surface_proposals(parameters.on_surface_proposals),
       m_tolerance(parameters.energy_tolerance)
@@ -86,7 +101,7 @@ public:
   void solve(const std::vector<int>& faces,
              const Optimization_state& state,
              const Density& density,
-             const Acceptance_test::Limits& limits,
+             const Solver_settings& settings,
              const Drift_guard& drift_guard,
              Moves moves,
              Solved_patch& s)
@@ -96,17 +111,18 @@ public:
     s.acceptance_time = seconds_since(start);
     if(s.patch.number_of_free_vertices == 0)
     {
-      finish(state, drift_guard, s);
+      finish(state, drift_guard, Patch_samples(), s);
       return;
     }
     s.was_tried = true;
     check(m_interruption);
-    drift_guard.invite(state, s.patch);
+    Patch_samples samples = drift_guard.gather(state, s.patch);
     check(m_interruption);
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
-      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, limits, s);
+      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, settings,
+              samples, s);
       s.path = m_flattened_mover.flattening().path;
       s.overlaps = m_flattened_mover.overlaps();
       s.distortion = m_flattened_mover.flattening().distortion;
@@ -114,26 +130,28 @@ public:
     }
     else if(moves == Moves::by_search)
     {
-      m_search_mover.set_target(limits.searched, limits.sharp);
-      improve(m_search_mover, 1, m_tolerance, state, density, limits, s);
+      m_search_mover.set_target(settings.search_density, settings.search_cosine);
+      improve(m_search_mover, 1, m_tolerance, state, density, settings, samples, s);
     }
     else if(moves == Moves::opening)
-      improve(m_cluster_mover, 1, m_tolerance, state, density, limits, s);
+      improve(m_cluster_mover, 1, m_tolerance, state, density, settings, samples, s);
     else
     {
       // its steps are cheap: a small gain is worth another
-      m_on_surface_mover.set_strain_resistance(limits.strain_resistance);
+      m_on_surface_mover.set_strain_resistance(settings.strain_resistance);
       improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
-              limits, s);
+              settings, samples, s);
       s.missed = (1 - s.taken) * m_on_surface_mover.promised();
     }
-    finish(state, drift_guard, s);
+    finish(state, drift_guard, samples, s);
   }
 
 private:
   // notes what the commit needs, and drops what it does not
-  static void
-  finish(const Optimization_state& state, const Drift_guard& drift_guard, Solved_patch& s)
+  static void finish(const Optimization_state& state,
+                     const Drift_guard& drift_guard,
+                     const Patch_samples& samples,
+                     Solved_patch& s)
   {
     s.number_of_faces = s.patch.faces.size();
     s.number_of_free_vertices = std::size_t(s.patch.number_of_free_vertices);
@@ -150,13 +168,21 @@ private:
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
         }
+      for(const Patch::Stencil& stencil : s.patch.stencils)
+        if(stencil.is_shared)
+        {
+          s.shared_stencils.push_back(stencil.number);
+          for(int i = 0; i < stencil.size; ++i)
+            if(stencil.vertices[i] >= 0)
+              is_outer[stencil.vertices[i]] = 1;
+        }
       for(std::size_t v = 0; v < is_outer.size(); ++v)
         if(s.patch.is_free[v])
           (is_outer[v] ? s.outer_vertices : s.inner_vertices).push_back(int(v));
-      s.samples = drift_guard.samples_of(state.mesh, s.patch);
+      s.samples = drift_guard.samples_of(state.mesh, s.patch, samples);
       kept.faces = std::move(s.patch.faces);
       kept.vertices = std::move(s.patch.vertices);
-      kept.guests = std::move(s.patch.guests);
+      s.guests = samples.guests;
       s.placed = std::move(s.patch.placed);
     }
     s.patch = std::move(kept);
@@ -169,32 +195,32 @@ private:
                double tolerance,
                const Optimization_state& state,
                const Density& density,
-               const Acceptance_test::Limits& limits,
+               const Solver_settings& settings,
+               Patch_samples& samples,
                Solved_patch& s)
   {
-    bool proposes = mover.propose(s.patch, density);
+    bool proposes = mover.propose(s.patch, samples, density);
     for(int pass = 0; proposes; ++pass)
     {
       const auto start = std::chrono::steady_clock::now();
-      const Acceptance_test::Decision decision =
-        m_acceptance.decide(s.patch, state, mover, density, limits, pass == 0);
+      const Backtracking::Decision decision =
+        m_backtracking.decide(s.patch, samples, state, mover, density, settings.limits, pass == 0);
       if(pass == 0)
         s.decision = decision;
       if(decision.accepted)
       {
         s.decision.after = decision.after;
-        s.patch.placed.swap(m_acceptance.candidate());
-        s.patch.samples = m_acceptance.samples();
-        s.patch.guests = m_acceptance.guests();
-        s.taken = mean_part(s.patch, m_acceptance.steps());
+        s.patch.placed.swap(m_backtracking.candidate());
+        samples = m_backtracking.samples();
+        s.taken = mean_part(s.patch, m_backtracking.steps());
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
       // a few elements that nothing can open may own the sum
-      const double scale =
-        (std::min)(std::abs(decision.before.energy), limits.bad * double(s.patch.elements.size()));
+      const double scale = (std::min)(std::abs(decision.before.energy),
+                                      settings.bad_density * double(s.patch.elements.size()));
       proposes = decision.accepted && gain >= tolerance * scale && pass + 1 < maximum_proposals &&
-                 mover.propose_again(s.patch, m_acceptance.steps(), density);
+                 mover.propose_again(s.patch, samples, m_backtracking.steps(), density);
     }
     s.optimization_time = mover.optimization_time();
   }
@@ -213,7 +239,7 @@ private:
   On_surface_mover m_on_surface_mover;
   Search_mover m_search_mover;
   Cluster_mover m_cluster_mover;
-  Acceptance_test m_acceptance;
+  Backtracking m_backtracking;
   int m_flattened_proposals, m_on_surface_proposals;
   double m_tolerance;
 };

@@ -117,15 +117,14 @@ std::vector<char> defective_faces(const Optimization_state& state)
     for(int f = begin; f < end; ++f)
     {
       normals[f] = face_normal(mesh, vertex, f);
-      result[f] =
-        is_flipped(mesh, vertex, f, normals[f], state.caution) || is_nonconvex(mesh, vertex, f);
+      result[f] = is_flipped(mesh, vertex, f, normals[f]) || is_nonconvex(mesh, vertex, f);
     }
   });
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
     for(int f = begin; f < end; ++f)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0 &&
-           is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution))
+           is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]))
           result[f] = 1;
   });
   return result;
@@ -192,7 +191,7 @@ double lower_half_mean(const Optimization_state& state, const Density& density)
   return sum / double(half);
 }
 
-// The energy if all elements had the shape of their rest triangles, scaled so that their areas add up
+// The energy of the elements if all had the shape of their rest triangles, scaled so that their areas add up
 // to those of the mesh as it is.
 template <typename Density>
 double rest_energy(const Optimization_state& state, const Density& density)
@@ -206,7 +205,12 @@ double rest_energy(const Optimization_state& state, const Density& density)
     rest_area += rest;
   }
   const double scale = area > 0 ? std::sqrt(area / rest_area) : 1;
-  return double(state.elements.size()) * density.value(scale * Eigen::Matrix2d::Identity());
+  double energy = 0;
+  for(int term = 0; term < density.number_of_terms(); ++term)
+    density.visit(term, [&](const auto& d) {
+      energy += state.elements.weight_of_term(term) * d.value(scale * Eigen::Matrix2d::Identity());
+    });
+  return energy;
 }
 
 // the mean length of the edges at every vertex

@@ -23,7 +23,6 @@ struct Selection_parameters
   double developability_threshold = 0.25; // epsilon_d
   int maximum_patch_size = 0;             // in faces; 0: chosen by the size of the mesh
   int exempt_size = 70;                   // the first faces of a patch need not fit the proxy
-  bool is_flattened = true; // else any region will do: neither a disk nor a cone is wanted
   // As in the paper: the cheapest face comes next, and the proxy stays as it is at the seed. What is
   // over the threshold then ends the patch, for all that is left costs as much.
   bool grows_by_cost = false;
@@ -87,7 +86,7 @@ public:
     ++m_stamp;
     std::vector<int> patch;
     Cone_proxy_fit fit;
-    Cone_proxy proxy = m_parameters.is_flattened ? initial_proxy(seed, geometry) : Cone_proxy();
+    Cone_proxy proxy = initial_proxy(seed, geometry);
     std::size_t next_fit = 128;
 
     const auto in_patch = [&](int f) { return m_face_stamp[f] == m_stamp; };
@@ -102,18 +101,16 @@ public:
       const int f = entry.second;
       if(in_patch(f))
         continue;
-      const bool is_exempt =
-        !m_parameters.is_flattened || int(patch.size()) < m_parameters.exempt_size;
+      const bool is_exempt = int(patch.size()) < m_parameters.exempt_size;
       if(!is_exempt && !(proxy.cost(geometry.normals[f]) < m_parameters.developability_threshold))
         continue;
-      if(m_parameters.is_flattened && !keeps_disk(m_mesh, f, in_patch, vertex_in_patch))
+      if(!keeps_disk(m_mesh, f, in_patch, vertex_in_patch))
         continue; // asked again when another neighbour joins
 
       patch.push_back(f);
       m_face_stamp[f] = m_stamp;
-      if(m_parameters.is_flattened)
-        fit.add(geometry.normals[f], geometry.areas[f]);
-      if(m_parameters.is_flattened && !m_parameters.grows_by_cost && patch.size() == next_fit)
+      fit.add(geometry.normals[f], geometry.areas[f]);
+      if(!m_parameters.grows_by_cost && patch.size() == next_fit)
       {
         proxy = fit.fit();
         next_fit *= 2;

@@ -24,8 +24,9 @@ namespace internal {
 
 // How far mesh and reference are apart, both ways: at the middles of the mesh's edges and triangles,
 // and at the vertices and the middles of the creases of R. Vertices of the mesh on R do not keep its
-// faces from leaving R, nor from cutting R's features off. A patch takes its samples, and the points of R
-// that are guests of its faces, along; the acceptance test looks after them, and they return with the accepted patch.
+// faces from leaving R, nor from cutting R's features off. A patch travels
+// with its samples and the points of R that are projected onto it (Patch_samples); they return with it once
+// it is accepted.
 //
 // What is beyond the bound on input may not go further than it is.
 class Drift_guard
@@ -80,48 +81,51 @@ public:
     return largest;
   }
 
-  void invite(const Optimization_state& state, Patch& patch) const
+  // the samples of a patch, and the points of R that are projected onto it
+  Patch_samples gather(const Optimization_state& state, const Patch& patch) const
   {
+    Patch_samples result;
     if(!is_on())
-      return;
-    patch.barrier = m_barrier;
-    patch.drift_bound = m_bound;
+      return result;
+    result.barrier = m_barrier;
+    result.bound = m_bound;
     if(!m_local_bounds.empty())
-      patch.local_bounds = &m_local_bounds;
+      result.local_bounds = &m_local_bounds;
     if(!m_least_bounds.empty())
       for(const int f : patch.faces)
-        patch.least_bounds.push_back(m_least_bounds[f]);
+        result.least_bounds.push_back(m_least_bounds[f]);
     const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
 
     const int n = patch.triangles().number_of_faces();
-    patch.samples.resize(4 * n);
+    result.samples.resize(4 * n);
     for(int t = 0; t < n; ++t)
       for(int i = 0; i < 4; ++i)
       {
         const int s = sample_of(patch, t, i);
         if(s != 4 * t + i)
           continue;
-        Patch::Sample& sample = patch.samples[s];
+        Patch_samples::Sample& sample = result.samples[s];
         if(!m_known.empty())
         {
           const Known& known = m_known[known_sample(state.mesh, patch, s)];
           sample.face = known.face;
           sample.distance = known.distance;
-          sample.bound = known.face >= 0 ? patch.bound_of(t, known.face) : 0;
+          sample.bound = known.face >= 0 ? result.bound_at(patch.polygon_of(t), known.face) : 0;
         }
         if(sample.face < 0 || Drift_barrier::is_felt(sample.distance, sample.bound))
-          locate_sample(patch, state.reference, vertex, s, sample);
+          locate_sample(patch, result, state.reference, vertex, s, sample);
       }
 
     for(std::size_t f = 0; f < patch.faces.size(); ++f)
       for(int r = m_first[patch.faces[f]]; r >= 0; r = m_next[r])
       {
-        patch.guests.push_back(
+        result.guests.push_back(
           {r, int(f), m_distance[r], m_witness_bounds.empty() ? m_bound : m_witness_bounds[r]});
-        Patch::Guest& guest = patch.guests.back();
+        Patch_samples::Guest& guest = result.guests.back();
         if(Drift_barrier::is_felt(guest.distance, guest.bound))
           locate_guest(patch, state.reference, vertex, guest);
       }
+    return result;
   }
 
   // what a solved patch knows of its samples
@@ -132,28 +136,29 @@ public:
   };
   typedef std::vector<std::pair<std::size_t, Known>> Known_samples;
 
-  Known_samples samples_of(const Indexed_mesh& mesh, const Patch& patch) const
+  Known_samples
+  samples_of(const Indexed_mesh& mesh, const Patch& patch, const Patch_samples& samples) const
   {
     Known_samples result;
     if(!is_on() || m_known.empty())
       return result;
-    for(int s = 0; s < int(patch.samples.size()); ++s)
+    for(int s = 0; s < int(samples.samples.size()); ++s)
       if(sample_of(patch, s / 4, s % 4) == s)
         result.push_back(
-          {known_sample(mesh, patch, s), {patch.samples[s].face, patch.samples[s].distance}});
+          {known_sample(mesh, patch, s), {samples.samples[s].face, samples.samples[s].distance}});
     return result;
   }
 
   // patches without a common face may return at the same time
   void take_back(const std::vector<int>& faces,
-                 const std::vector<Patch::Guest>& guests,
+                 const std::vector<Patch_samples::Guest>& guests,
                  const Known_samples& samples)
   {
     if(!is_on())
       return;
     for(const int f : faces)
       m_first[f] = -1;
-    for(const Patch::Guest& g : guests)
+    for(const Patch_samples::Guest& g : guests)
       settle(g.witness, faces[g.polygon], g.distance);
     for(const auto& s : samples)
       m_known[s.first] = s.second;
@@ -163,7 +168,7 @@ public:
   struct Snapshot
   {
     std::vector<int> faces;
-    std::vector<Patch::Guest> guests; // each with the position of its face in the list
+    std::vector<Patch_samples::Guest> guests; // each with the position of its face in the list
     Known_samples samples;
   };
 

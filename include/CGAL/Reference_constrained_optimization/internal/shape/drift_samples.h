@@ -6,7 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SHAPE_DRIFT_SAMPLES_H
 
 #include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
-#include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/Patch_samples.h>
 
 #include <algorithm>
 #include <array>
@@ -66,10 +66,11 @@ Vector_3 triangle_point(const Indexed_mesh& mesh,
 // matter of the side: the descent ends where it begins if the faces make an acute angle.
 template <typename VertexAccess>
 void locate_sample(const Patch& patch,
+                   const Patch_samples& samples,
                    const Reference_surface& reference,
                    const VertexAccess& vertex,
                    int s,
-                   Patch::Sample& sample)
+                   Patch_samples::Sample& sample)
 {
   const Indexed_mesh& mesh = patch.triangles();
   const int i = s % 4, number_of_corners = i == 3 ? 3 : 2;
@@ -84,7 +85,7 @@ void locate_sample(const Patch& patch,
   {
     sample.face = f;
     sample.distance = 0;
-    sample.bound = patch.bound_of(s / 4, f);
+    sample.bound = samples.bound_at(patch.polygon_of(s / 4), f);
     return;
   }
   const Vector_3 p = triangle_point(mesh, vertex, s / 4, sample_barycentric(i));
@@ -123,7 +124,7 @@ void locate_sample(const Patch& patch,
       start_at(k);
   for(int k = 0; k < number_of_corners && number_of_starts == 0; ++k)
     start_at(k);
-  sample.bound = patch.bound_of(s / 4, sample.face);
+  sample.bound = samples.bound_at(patch.polygon_of(s / 4), sample.face);
 }
 
 // Looks for the closest point of the patch to a point of R, from where it was last.
@@ -131,7 +132,7 @@ template <typename VertexAccess>
 void locate_guest(const Patch& patch,
                   const Reference_surface& reference,
                   const VertexAccess& vertex,
-                  Patch::Guest& guest)
+                  Patch_samples::Guest& guest)
 {
   const Vector_3 p = reference.witness(guest.witness);
   const Foot foot = descend_to(

@@ -30,11 +30,11 @@ public:
 
   // `motion(v)` is the matrix (3x2) by which vertex v moves in space when its coordinates do
   template <typename Motion>
-  void collect(const Patch& patch, const Motion& motion)
+  void collect(const Patch& patch, const Patch_samples& samples, const Motion& motion)
   {
     m_terms.clear();
-    m_barrier = patch.barrier;
-    if(patch.samples.empty())
+    m_barrier = samples.barrier;
+    if(!samples.are_bounded())
       return;
     const auto add = [&](int triangle, const Vector_3& barycentric, double distance, double bound,
                          const Vector_3& direction) {
@@ -44,13 +44,13 @@ public:
         term.rows[k] = barycentric(k) * (motion(corners[k]).transpose() * direction);
       m_terms.push_back(term);
     };
-    for(int s = 0; s < int(patch.samples.size()); ++s)
+    for(int s = 0; s < int(samples.samples.size()); ++s)
     {
-      const Patch::Sample& sample = patch.samples[s];
+      const Patch_samples::Sample& sample = samples.samples[s];
       if(Drift_barrier::is_felt(sample.distance, sample.bound))
         add(s / 4, sample_barycentric(s % 4), sample.distance, sample.bound, sample.direction);
     }
-    for(const Patch::Guest& guest : patch.guests)
+    for(const Patch_samples::Guest& guest : samples.guests)
       if(Drift_barrier::is_felt(guest.distance, guest.bound))
         add(guest.triangle, guest.barycentric, guest.distance, guest.bound, guest.direction);
   }
@@ -65,10 +65,11 @@ private:
 };
 
 // the triangles in which terms may be; none if the barrier is off
-inline std::vector<std::array<int, 3>> drift_carriers(const Patch& patch)
+inline std::vector<std::array<int, 3>> drift_carriers(const Patch& patch,
+                                                      const Patch_samples& samples)
 {
   std::vector<std::array<int, 3>> carriers;
-  if(patch.samples.empty())
+  if(!samples.are_bounded())
     return carriers;
   const Indexed_mesh& triangles = patch.triangles();
   for(int t = 0; t < triangles.number_of_faces(); ++t)

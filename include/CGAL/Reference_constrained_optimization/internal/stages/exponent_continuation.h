@@ -19,36 +19,39 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
+// The exponent factor of a density; 0 if it has none.
+template <typename Density>
+double exponent_factor(const Density&)
+{
+  return 0;
+}
+inline double exponent_factor(const Exponential_MIPS_density& density)
+{
+  return density.exponent_factor();
+}
+
 // Where slivers that nothing can open own the sum, an exponential energy falls at the cost of all the other
 // elements. So its exponent starts mild where there are many, and becomes steeper, up to what is asked
 // for, once they own no more than a part of the energy. Other densities are left as they are.
-template <typename Density>
-struct Exponent_continuation
+template <typename Densities>
+class Exponent_continuation
 {
-  explicit Exponent_continuation(const Density& density) : m_density(density) {}
-  const Density& density() const { return m_density; }
-  bool is_complete() const { return true; }
-  template <typename ConcurrencyTag>
-  bool advance(const Optimization_state&)
+public:
+  explicit Exponent_continuation(const Densities& densities)
+    : m_target(densities),
+      m_densities(densities)
   {
-    return false;
+    for(int term = 0; term < densities.number_of_terms(); ++term)
+      densities.visit(term, [&](const auto& d) {
+        m_target_factor = (std::max)(m_target_factor, exponent_factor(d));
+      });
+    m_factor = (std::min)(mildest, m_target_factor);
+    m_densities = milder(m_factor);
   }
 
-private:
-  const Density& m_density;
-};
-
-template <>
-struct Exponent_continuation<Exponential_MIPS_density>
-{
-  explicit Exponent_continuation(const Exponential_MIPS_density& density)
-    : m_target(density),
-      m_density(density.exponent_factor() > mildest ? milder(mildest) : density)
-  {}
-
-  const Exponential_MIPS_density& density() const { return m_density; }
-  // whether that is the one that is asked for
-  bool is_complete() const { return m_density.exponent_factor() == m_target.exponent_factor(); }
+  const Densities& densities() const { return m_densities; }
+  // whether these are the ones that are asked for
+  bool is_complete() const { return m_factor == m_target_factor; }
 
   // To the steepest exponent that slivers do not own; false if that is what there is. On mechanical parts
   // a tenth of what is asked for is the steepest: slivers between feature lines can never open.
@@ -58,16 +61,18 @@ struct Exponent_continuation<Exponential_MIPS_density>
     const double step = std::sqrt(10.);
     const double rounding = 1e-9;
     const double steepest =
-      (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target.exponent_factor();
+      (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target_factor;
     bool advances = false;
-    while(m_density.exponent_factor() < steepest)
+    while(m_factor < steepest)
     {
-      const double next = m_density.exponent_factor() * step;
-      const Exponential_MIPS_density steeper =
-        next > (1 - rounding) * m_target.exponent_factor() ? m_target : milder(next);
+      double next = m_factor * step;
+      if(next > (1 - rounding) * m_target_factor)
+        next = m_target_factor;
+      const Densities steeper = milder(next);
       if(imbalance<ConcurrencyTag>(state, steeper) > largest_imbalance)
         break;
-      m_density = steeper;
+      m_factor = next;
+      m_densities = steeper;
       advances = true;
     }
     return advances;
@@ -76,15 +81,26 @@ struct Exponent_continuation<Exponential_MIPS_density>
 private:
   static constexpr double mildest = 0.1, largest_imbalance = 20;
 
-  // with the cap at the same shape as that of the exponent factor 1
-  static Exponential_MIPS_density milder(double factor)
+  // with no exponent factor beyond the given one
+  Densities milder(double factor) const
   {
-    return Exponential_MIPS_density(factor, 20 * factor);
+    return m_target.transformed([&](const auto& density) { return milder(density, factor); });
+  }
+  template <typename Density>
+  static Density milder(const Density& density, double)
+  {
+    return density;
+  }
+  // with the cap at the same shape as that of the exponent factor 1
+  static Exponential_MIPS_density milder(const Exponential_MIPS_density& density, double factor)
+  {
+    return factor < density.exponent_factor() ? Exponential_MIPS_density(factor, 20 * factor)
+                                              : density;
   }
 
   // the mean density of the elements, but for the worst of them, over that of the better half
   template <typename ConcurrencyTag>
-  static double imbalance(const Optimization_state& state, const Exponential_MIPS_density& density)
+  static double imbalance(const Optimization_state& state, const Densities& steeper)
   {
     const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
     std::vector<double> densities(state.elements.size());
@@ -94,7 +110,7 @@ private:
       {
         const std::array<int, 3>& v = state.elements[e].vertices;
         const bool is_fixed = !state.is_free[v[0]] && !state.is_free[v[1]] && !state.is_free[v[2]];
-        densities[e] = is_fixed ? none : element_energy(density, state.elements[e], vertex);
+        densities[e] = is_fixed ? none : element_energy(steeper, state.elements[e], vertex);
       }
     });
     densities.erase(std::remove(densities.begin(), densities.end(), none), densities.end());
@@ -112,8 +128,9 @@ private:
     return sum / double(most) / (half_sum / double(half));
   }
 
-  const Exponential_MIPS_density& m_target;
-  Exponential_MIPS_density m_density;
+  const Densities& m_target;
+  Densities m_densities;
+  double m_target_factor = 0, m_factor = 0;
 };
 
 } // namespace internal

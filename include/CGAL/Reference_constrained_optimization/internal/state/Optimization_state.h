@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Element_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Stencil_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Slide_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
@@ -65,10 +66,8 @@ struct Optimization_state
   Slide_lines lines = {};
   // per vertex that slides: its two neighbours on its line in the mesh; else -1
   std::vector<std::array<int, 2>> line_neighbours = {};
+  Stencil_set stencils = {};
   std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
-  // A cosine: what comes as close as that to being turned over or folded counts as if it were. Where
-  // coordinates were rounded to a frame this cannot have hidden anything then.
-  double caution = 0;
   // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
   // mesh, whether its turn against R is bounded, and per corner, whether its edge hardly turns on input and
   // must not become sharp; empty if there are none
@@ -123,17 +122,12 @@ double face_volume(const Indexed_mesh& mesh,
 }
 
 template <typename VertexAccess>
-bool is_flipped(const Indexed_mesh& mesh,
-                const VertexAccess& vertex,
-                int f,
-                const Vector_3& normal,
-                double caution)
+bool is_flipped(const Indexed_mesh& mesh, const VertexAccess& vertex, int f, const Vector_3& normal)
 {
   Vector_3 sum = Vector_3::Zero();
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     sum += vertex(mesh.corner_vertex[c]).normal;
-  const double d = normal.dot(sum);
-  return d < 0 || d * d < caution * caution * normal.squaredNorm() * sum.squaredNorm();
+  return normal.dot(sum) < 0;
 }
 
 template <typename VertexAccess>
@@ -152,9 +146,9 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
   return false;
 }
 
-inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b, double caution)
+inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
 {
-  return normal_a.dot(normal_b) < (caution - 0.5) * normal_a.norm() * normal_b.norm();
+  return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
 }
 
 // Jacobian of one element on the surface
@@ -181,7 +175,7 @@ double element_energy(const Density& density,
                       const Element_set::Element& element,
                       const VertexAccess& vertex)
 {
-  return density.value(element_jacobian(element, vertex));
+  return element_value(density, element, element_jacobian(element, vertex), 0);
 }
 
 // cosine of the smallest angle of a triangle, given by its three vertices; 1 if a side has no length
@@ -226,10 +220,16 @@ inline double volume_of_parts(const Optimization_state& state)
   return sum;
 }
 
+inline double energy_of_stencils(const Optimization_state& state)
+{
+  return state.stencils.sum_at(
+    [&](int v) -> const Vector_3& { return state.vertices[v].position; });
+}
+
 // Figures of the whole mesh. Sums run in the order of the faces, block by block.
 struct Global_measure
 {
-  double energy = 0;        // sum of densities
+  double energy = 0;        // sum of densities and stencils
   double capped_energy = 0; // the same, each density capped
   double worst = 0;         // largest density of an element that is not inverted
   double sharpest = -1;     // largest cosine of an angle of a triangle with an element
@@ -253,16 +253,15 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     Global_measure& m = parts[block];
     for(int f = begin; f < end; ++f)
     {
-      m.flips += is_flipped(mesh, vertex, f, normals[f], state.caution);
+      m.flips += is_flipped(mesh, vertex, f, normals[f]);
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] > c)
-          m.fold_edges +=
-            is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]], state.caution);
+          m.fold_edges += is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
-        const double d = density.value(J);
+        const double d = element_value(density, state.elements[e], J, 0);
         m.energy += d;
         m.capped_energy += (std::min)(d, cap);
         if(J.determinant() > 0)
@@ -282,6 +281,12 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     sum.flips += m.flips;
     sum.fold_edges += m.fold_edges;
     sum.nonconvex_quads += m.nonconvex_quads;
+  }
+  if(!state.stencils.empty())
+  {
+    const double stencils = energy_of_stencils(state);
+    sum.energy += stencils;
+    sum.capped_energy += stencils;
   }
   return sum;
 }

@@ -6,12 +6,9 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_PATCH_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/objective/drift_barrier.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +16,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A disk of faces with local indices: everything that movers and the acceptance test need of it.
+// Some faces with local indices: where they are, what may move, and what energy is asked of them.
 struct Patch
 {
   std::vector<int> faces;    // of the whole mesh
@@ -36,17 +33,33 @@ struct Patch
   std::vector<std::array<int, 2>> line_neighbours;
   const Slide_lines* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
-  double caution = 0; // see Optimization_state
   // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
   std::vector<char> bounds_turn, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
-  // by how much the sum of the faces' smallest angles may fall, in degrees
-  double angle_allowance = std::numeric_limits<double>::infinity();
-  // by how much its part of the volume (six times that) may grow and shrink
-  double largest_volume_gain = std::numeric_limits<double>::infinity();
-  double largest_volume_loss = std::numeric_limits<double>::infinity();
-  bool guards_volume() const { return std::isfinite(largest_volume_gain); }
+
+  // The stencils with a free vertex. Of their vertices those that are not in the patch stay where they are:
+  // number ~v of `outside_points`.
+  struct Stencil
+  {
+    int number, size;                          // of all stencils
+    std::array<int, largest_stencil> vertices; // local
+    bool is_shared;                            // has a vertex that others may move
+  };
+  std::vector<Stencil> stencils;
+  std::vector<Vector_3> outside_points;
+  const Stencil_set* all_stencils = nullptr;
+  const Vector_3& position(int v, const std::vector<Placed_vertex>& vertices) const
+  {
+    return v >= 0 ? vertices[v].position : outside_points[~v];
+  }
+  double value(const Stencil& stencil, const std::vector<Placed_vertex>& vertices) const
+  {
+    Stencil_points points;
+    for(int i = 0; i < stencil.size; ++i)
+      points[i] = position(stencil.vertices[i], vertices);
+    return all_stencils->value(stencil.number, points);
+  }
 
   // the faces split into triangles, for flattening and location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
@@ -58,43 +71,6 @@ struct Patch
   bool is_split = false;
   Indexed_mesh split;
   std::vector<int> split_polygon, first_triangle;
-
-  // The samples of the drift barrier; none if it is off. Directions are unit vectors from R to the
-  // mesh, known where the barrier is felt.
-  Drift_barrier barrier;
-  double drift_bound = 0;
-  const std::vector<double>* local_bounds =
-    nullptr;                        // per triangle of R, if it is not the same everywhere
-  std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
-  // of a sample of a triangle of the patch whose closest point is in a triangle of R
-  double bound_of(int triangle, int reference_face) const
-  {
-    const double bound = local_bounds ? (*local_bounds)[reference_face] : drift_bound;
-    return least_bounds.empty() ? bound : (std::max)(bound, least_bounds[polygon_of(triangle)]);
-  }
-
-  // a point of the mesh, see drift_samples.h
-  struct Sample
-  {
-    int face = -1; // of R, where its closest point is
-    double distance = 0;
-    double bound = 0; // there
-    Vector_3 direction = Vector_3::Zero();
-  };
-  std::vector<Sample> samples;
-
-  // a point of R whose closest point of the mesh is in the patch
-  struct Guest
-  {
-    int witness;     // of R
-    int polygon;     // local face that holds its closest point
-    double distance; // to it
-    double bound;
-    int triangle = -1; // local
-    Vector_3 barycentric = Vector_3::Zero();
-    Vector_3 direction = Vector_3::Zero();
-  };
-  std::vector<Guest> guests;
 };
 
 // Builds patches; keeps its index maps from call to call.
@@ -114,7 +90,6 @@ public:
     ++m_stamp;
     Patch patch;
     patch.faces = faces;
-    patch.caution = state.caution;
     std::vector<int> begins(1, 0), corners, opposites, corners_in_patch;
     begins.reserve(faces.size() + 1);
     for(const int f : faces)
@@ -168,16 +143,6 @@ public:
         patch.bounds_turn.push_back(state.bounds_turn[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
-    const double share = double(faces.size()) / double(mesh.number_of_faces());
-    if(state.guards_angles)
-      patch.angle_allowance = share * (std::max)(0., state.angle_surplus);
-    if(state.guards_volume())
-    {
-      patch.largest_volume_gain =
-        share * (std::max)(0., state.largest_volume_change - state.volume_change);
-      patch.largest_volume_loss =
-        share * (std::max)(0., state.largest_volume_change + state.volume_change);
-    }
     const int n = int(patch.vertices.size());
     patch.polygons = Indexed_mesh(std::move(begins), std::move(corners), std::move(opposites), n);
     patch.is_free.reserve(n);
@@ -189,12 +154,41 @@ public:
       patch.number_of_free_vertices += patch.is_free.back();
     }
     collect_sliding(state, patch);
+    collect_stencils(state, patch);
     if(patch.is_split)
       split(patch);
     return patch;
   }
 
 private:
+  void collect_stencils(const Optimization_state& state, Patch& patch)
+  {
+    patch.all_stencils = &state.stencils;
+    if(state.stencils.empty())
+      return;
+    m_stencil_stamp.resize(state.stencils.size(), 0);
+    for(std::size_t i = 0; i < patch.vertices.size(); ++i)
+      if(patch.is_free[i])
+        state.stencils.for_each_at(patch.vertices[i], [&](int s) {
+          if(m_stencil_stamp[s] == m_stamp)
+            return;
+          m_stencil_stamp[s] = m_stamp;
+          const Stencil_set::Stencil& stencil = state.stencils[s];
+          Patch::Stencil local{s, stencil.size, {}, false};
+          for(int j = 0; j < stencil.size; ++j)
+          {
+            const int v = stencil.vertices[j];
+            const bool is_inside = m_vertex_stamp[v] == m_stamp;
+            local.is_shared =
+              local.is_shared || (state.is_free[v] && !(is_inside && patch.is_free[m_local[v]]));
+            local.vertices[j] = is_inside ? m_local[v] : ~int(patch.outside_points.size());
+            if(!is_inside)
+              patch.outside_points.push_back(state.vertices[v].position);
+          }
+          patch.stencils.push_back(local);
+        });
+  }
+
   // all faces of a vertex that slides in the patch are in it, and so are its neighbours
   void collect_sliding(const Optimization_state& state, Patch& patch) const
   {
@@ -249,6 +243,7 @@ private:
 
   std::vector<int> m_face_stamp, m_vertex_stamp, m_local;
   std::vector<int> m_local_corner; // per face: its first corner in the patch
+  std::vector<int> m_stencil_stamp;
   int m_stamp = 0;
 };
 

@@ -5,7 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITING_WRITE_BACK_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITING_WRITE_BACK_H
 
-#include <CGAL/Reference_constrained_optimization/internal/writing/caller_view.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 #include <CGAL/property_map.h>
@@ -21,20 +22,24 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// writes the positions of the vertices that moved; the others keep their bits
+// Writes the positions of the vertices that are not where they were `before`, in the frame; the others
+// keep their bits.
 template <typename PolygonMesh, typename VertexPointMap>
 void write_points(const PolygonMesh& g,
                   const VertexPointMap& vpm,
                   const std::vector<Vector_3>& before,
-                  const Caller_view& view)
+                  const Optimization_state& state,
+                  const Frame& frame)
 {
   typedef typename boost::property_traits<VertexPointMap>::value_type Point;
   int i = 0;
   for(const auto v : vertices(g))
   {
-    const Vector_3 p = view.position(i);
-    if(p != before[i])
+    if(state.vertices[i].position != before[i])
+    {
+      const Vector_3 p = frame.to_caller(state.vertices[i].position);
       put(vpm, v, Point(p.x(), p.y(), p.z()));
+    }
     ++i;
   }
 }
@@ -57,8 +62,7 @@ template <typename PolygonMesh, typename ReferenceMesh, typename NamedParameters
 void write_locations(const PolygonMesh& g,
                      const ReferenceMesh& reference,
                      const NamedParameters& np,
-                     const Optimization_state& state,
-                     const Caller_view& view)
+                     const Optimization_state& state)
 {
   if constexpr(!parameters::is_default_parameter<NamedParameters,
                                                  internal_np::vertex_location_map_t>::value)
@@ -72,7 +76,7 @@ void write_locations(const PolygonMesh& g,
       ++i;
       if(state.mesh.is_isolated(i))
         continue;
-      const Surface_point p = view.location(i);
+      const Surface_point& p = state.vertices[i].on_reference;
       put(map, v,
           std::make_pair(
             all_faces[state.reference.original_face(p.face)],

@@ -2,13 +2,11 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_STAGE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_STAGE_H
 
-#include <CGAL/Reference_constrained_optimization/internal/rounds/patch_solver.h>
-#include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/Patch_visits.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,41 +45,33 @@ worst_faces(const Optimization_state& state, const Density& density, double bad)
 // Visits the worst faces by themselves, as long as that helps: by Newton steps on the surface in small
 // patches around them, and where these leave them as they were, by a search for better places of
 // their vertices. Without steps on the surface small patches are flattened instead.
-template <typename ConcurrencyTag, typename Density>
+template <typename Visits>
 class Worst_faces_stage
 {
-public:
-  // what a visit has to do with faces
-  struct Goal
-  {
-    double worst;    // no element may end beyond it
-    double searched; // elements beyond it are what a search is for
-  };
+  typedef typename Visits::ConcurrencyTag ConcurrencyTag;
+  typedef typename Visits::Densities Densities;
 
-  // Faces with an element beyond `bad` are visited, those beyond `bad_for_search` searched, too.
-  Worst_faces_stage(const Optimization_state& state,
-                    const Density& density,
-                    double bad,
-                    double bad_for_search,
-                    Interruption* interruption = nullptr)
-    : m_state(state),
-      m_density(density),
-      m_bad(bad),
-      m_bad_for_search(bad_for_search),
-      m_interruption(interruption)
+public:
+  // `searches_later`: a later stage searches, too, so that this one does so for worse elements only
+  Worst_faces_stage(Visits& visits, bool searches_later)
+    : m_visits(visits),
+      m_state(visits.state),
+      m_densities(visits.densities()),
+      m_bad(visits.settings.bad_density),
+      m_bad_for_search((searches_later ? 4 : 1) * m_bad)
   {}
 
-  // `visit(faces, moves, goal)` optimizes these faces; false if it was cut short, and so is this.
-  template <typename Visit>
-  bool run(bool use_on_surface_steps, const Visit& visit)
+  // false if it was cut short
+  bool run()
   {
+    const bool use_on_surface_steps = m_visits.parameters.use_on_surface_steps;
     const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
     m_found.assign(m_state.mesh.number_of_faces(), 0);
     for(int pass = 0; pass < maximum_passes; ++pass)
     {
-      check(m_interruption);
-      const Faces worst = worst_faces<ConcurrencyTag>(m_state, m_density, m_bad);
+      m_visits.interruption.check();
+      const Faces worst = worst_faces<ConcurrencyTag>(m_state, m_densities, m_bad);
       if(worst.empty())
         return true;
       double after = 0;
@@ -93,9 +83,12 @@ public:
       if(!(after < enough))
         return true;
       before = after;
-      const Goal goal{worst.front().first, std::numeric_limits<double>::infinity()};
-      const bool goes_on = use_on_surface_steps ? move(worst, goal, visit)
-                                                : visit(marked(worst), Moves::flattened, goal);
+      double& largest = m_visits.settings.limits.density; // no element may end beyond it
+      largest = (std::min)(largest, worst.front().first);
+      m_visits.settings.search_density = std::numeric_limits<double>::infinity();
+      const bool goes_on = use_on_surface_steps
+                             ? move(worst)
+                             : m_visits.flatten(marked(worst), m_visits.small_selection);
       if(!goes_on)
         return false;
     }
@@ -118,39 +111,42 @@ private:
     return faces_around(m_state.mesh, vertices_of(m_state.mesh, marked(faces)), 2);
   }
 
-  template <typename Visit>
-  bool move(const Faces& faces, Goal goal, const Visit& visit)
+  bool move(const Faces& faces)
   {
-    if(!visit(with_surroundings(faces), Moves::on_surface, goal))
+    if(!m_visits.visit_regions(with_surroundings(faces), Moves::on_surface, m_densities))
       return false;
+    double& searched =
+      m_visits.settings.search_density; // elements beyond it are what a search is for
     Faces stuck;
     // where many are as bad as the last of them a search has no exceptions to deal with
     const bool are_all = faces.size() < number_of_exceptions(m_state.mesh);
     const double common = are_all ? 0 : faces.back().first;
     for(const std::pair<double, int>& d : faces)
     {
-      const double density = face_density(m_state, m_density, d.second);
+      const double density = face_density(m_state, m_densities, d.second);
       // what a search has left, and nothing has touched since, the next would leave, too
       const bool was_left = std::abs(density - m_found[d.second]) < 0.01 * density;
       if(!(density > m_bad_for_search) || !(density > 0.8 * d.first) || was_left ||
          !(density > common))
         continue;
       stuck.push_back(d);
-      goal.searched = (std::min)(goal.searched, 0.99 * density);
+      searched = (std::min)(searched, 0.99 * density);
     }
-    goal.searched = (std::max)(goal.searched, common);
+    searched = (std::max)(searched, common);
     if(stuck.empty())
       return true;
-    const bool goes_on = visit(with_surroundings(stuck), Moves::by_search, goal);
+    const bool goes_on =
+      m_visits.visit_regions(with_surroundings(stuck), Moves::by_search, m_densities);
     for(const std::pair<double, int>& d : stuck)
-      m_found[d.second] = face_density(m_state, m_density, d.second);
+      m_found[d.second] = face_density(m_state, m_densities, d.second);
     return goes_on;
   }
 
+  Visits& m_visits;
   const Optimization_state& m_state;
-  const Density& m_density;
-  double m_bad, m_bad_for_search;
-  Interruption* m_interruption;
+  const Densities& m_densities;
+  const double m_bad,
+    m_bad_for_search;          // faces with an element beyond these are visited, and searched
   std::vector<double> m_found; // per face: its density after it was searched, else 0
 };
 
@@ -158,4 +154,4 @@ private:
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_WORST_FACES_STAGE_H

@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_LARGEST_DENSITY_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_LARGEST_DENSITY_H
+
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Trial.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Violating_vertices.h>
+
+#include <cstddef>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// No element gets beyond the largest density that the mesh had, or further beyond.
+struct Largest_density : Invariant
+{
+  void set(const Step_limits& limits) { m_limit = limits.density; }
+
+  bool holds(const Trial& trial, Violating_vertices& violating) const
+  {
+    bool holds = true;
+    for(std::size_t e = 0; e < trial.patch.elements.size(); ++e)
+    {
+      const double density = trial.after.densities[e];
+      if(density > m_limit && density > trial.before.densities[e])
+      {
+        holds = false;
+        violating.add_element(e);
+      }
+    }
+    return holds;
+  }
+
+private:
+  double m_limit = 0;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_LARGEST_DENSITY_H

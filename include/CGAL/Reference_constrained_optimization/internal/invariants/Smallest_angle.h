@@ -1,0 +1,43 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Trial.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Violating_vertices.h>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// No angle of a triangle falls below the smallest that the mesh had, or further below.
+struct Smallest_angle : Invariant
+{
+  void set(const Step_limits& limits) { m_largest_cosine = limits.cosine; }
+
+  bool holds(const Trial& trial, Violating_vertices& violating) const
+  {
+    bool holds = true;
+    for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
+    {
+      const double cosine = trial.after.cosines[f];
+      if(cosine > m_largest_cosine && cosine > trial.before.cosines[f])
+      {
+        holds = false;
+        violating.add_face(f);
+      }
+    }
+    return holds;
+  }
+
+private:
+  double m_largest_cosine = 1;
+};
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_INVARIANTS_SMALLEST_ANGLE_H

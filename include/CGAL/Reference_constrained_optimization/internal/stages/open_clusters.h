@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H
+
+#include <CGAL/Reference_constrained_optimization/internal/stages/Patch_visits.h>
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// Takes vertices apart that all but coincide, as long as clusters get fewer. False if cut short.
+template <typename Visits>
+bool open_clusters(Visits& visits)
+{
+  typedef typename Visits::ConcurrencyTag ConcurrencyTag;
+  const Optimization_state& state = visits.state;
+  const auto point = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
+  std::size_t before = (std::numeric_limits<std::size_t>::max)();
+  while(true)
+  {
+    std::vector<char> is_in(state.mesh.number_of_vertices(), 0);
+    std::size_t number = 0;
+    for(const std::vector<int>& cluster : vertex_clusters(state.mesh, point))
+      for(const int v : cluster)
+      {
+        is_in[v] = 1;
+        number += state.is_free[v];
+      }
+    if(number == 0 || number >= before)
+      return true;
+    before = number;
+    const std::vector<char> faces = faces_around<ConcurrencyTag>(state.mesh, is_in, 1);
+    if(!visits.visit_regions(faces, Moves::opening, visits.densities()))
+      return false;
+  }
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H

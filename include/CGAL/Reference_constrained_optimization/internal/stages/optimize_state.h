@@ -1,0 +1,81 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPTIMIZE_STATE_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPTIMIZE_STATE_H
+
+#include <CGAL/Reference_constrained_optimization/internal/stages/Finishing_stage.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/Iteration_stage.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/Worst_faces_stage.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/open_clusters.h>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// The stages one after the other; the first that is cut short is the last.
+template <typename Visits>
+void run_stages(Visits& visits)
+{
+  const Loop_parameters& parameters = visits.parameters;
+  Global_measure before = visits.initialize();
+  Iteration_stage<Visits> iterations(visits);
+  visits.result.status = Status::iteration_limit;
+  if(visits.judges_angles && parameters.use_on_surface_steps && parameters.number_of_iterations > 0)
+  {
+    if(!open_clusters(visits))
+      return;
+    if(!visits.advance_densities(before))
+      before = visits.remeasure();
+  }
+  if(!iterations.run(before))
+    return;
+  const bool finishes =
+    parameters.use_finishing_stage && parameters.use_on_surface_steps && visits.judges_angles;
+  if(parameters.use_on_surface_steps || parameters.use_finishing_stage)
+    if(!Worst_faces_stage<Visits>(visits, finishes).run())
+      return;
+  if(finishes)
+    Finishing_stage<Visits>(visits).run();
+}
+
+// Optimizes a mesh on its reference, whose energy is given. The state holds what was accepted, also when it is cut short or a visitor
+// throws.
+template <typename ConcurrencyTag, typename Densities, typename Visitor>
+void optimize_state(Optimization_state& state,
+                    const Densities& densities,
+                    double initial_energy,
+                    const Loop_parameters& parameters,
+                    Visitor& visitor,
+                    Result& result,
+                    Interruption& interruption)
+{
+  Patch_visits<ConcurrencyTag, Densities, Visitor> visits(
+    state, densities, initial_energy, parameters, visitor, result, interruption);
+  const auto note_end = [&]() {
+    if(interruption.has_stopped())
+      result.status = interruption.status();
+    Drift_guard& guard = visits.round_solver.drift_guard();
+    if(guard.is_on())
+      result.drift = guard.template drift<ConcurrencyTag>(state);
+  };
+  try
+  {
+    run_stages(visits);
+  }
+  catch(const Interrupted&)
+  {}
+  catch(...)
+  {
+    note_end();
+    throw;
+  }
+  note_end();
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPTIMIZE_STATE_H

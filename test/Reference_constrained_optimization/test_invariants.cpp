@@ -1,0 +1,187 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// What no accepted step does: backtracking over a list of invariants, and one more than the package has.
+
+#include "test_meshes.h"
+
+#include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace internal = CGAL::Reference_constrained_optimization::internal;
+using namespace rco_test;
+
+// An invariant of one's own: no vertex goes further than a length.
+struct Short_steps : internal::Invariant
+{
+  static double limit;
+
+  bool holds(const internal::Trial& trial, internal::Violating_vertices& violating) const
+  {
+    bool holds = true;
+    for(int v = 0; v < int(trial.placed.size()); ++v)
+      if((trial.placed[v].position - trial.patch.placed[v].position).norm() > limit)
+      {
+        holds = false;
+        violating.add(v);
+      }
+    return holds;
+  }
+};
+double Short_steps::limit = 0;
+
+// proposes to take every vertex to where it is told
+struct Mover_to
+{
+  std::vector<Vector_3> ways;
+  const internal::Reference_surface& surface;
+
+  bool place(const internal::Patch& patch, int v, double t, internal::Placed_vertex& result) const
+  {
+    return internal::step_on_surface(surface, patch.placed[v], t * ways[v], result);
+  }
+  double motion_length(int v) const { return ways[v].norm(); }
+};
+
+// a scrambled mesh on its surface, all of it one patch
+struct Scene
+{
+  internal::Mesh_copy copy;
+  internal::Reference_surface surface;
+  internal::Element_set elements;
+  internal::Optimization_state state;
+  internal::Patch patch;
+  internal::Patch_samples samples;
+
+  Scene(const Shape& start, const Shape& reference)
+    : copy(copy_of(start)),
+      surface(copy_of(reference)),
+      elements(RCO::Minimum_angle_energy(),
+               RCO::Energy_context(
+                 copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(), 1, 1, 1)),
+      state{copy.mesh, surface, elements, {}, {}}
+  {
+    for(const char is_border : copy.mesh.is_border_vertex)
+      state.is_free.push_back(!is_border);
+    RCO::Result unused;
+    internal::place_on_reference<CGAL::Sequential_tag>(copy.points, surface, state, unused);
+    std::vector<int> faces;
+    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
+      faces.push_back(f);
+    patch = internal::Patch_builder(copy.mesh).build(faces, state);
+    internal::Drift_guard guard;
+    guard.initialize<CGAL::Sequential_tag>(state, 0.1, true, internal::Drift_barrier(1));
+    samples = guard.gather(state, patch);
+  }
+
+  // what Newton's method proposes, with steps that are far too long
+  Mover_to mover(double length, Random& random) const
+  {
+    Mover_to result{{}, surface};
+    for(const internal::Placed_vertex& v : patch.placed)
+      result.ways.push_back(length * Vector_3(random(-1, 1), random(-1, 1), random(-1, 1)) -
+                            0.3 * v.position);
+    return result;
+  }
+};
+
+// Random steps of all lengths: whatever is accepted obeys the invariants, measured anew.
+template <typename Backtracking>
+void test_random_steps(bool has_short_steps)
+{
+  const Shape sphere = icosphere(2);
+  const RCO::Exponential_MIPS_density density(1);
+  int accepted = 0, cut = 0;
+  for(int trial = 0; trial < 60; ++trial)
+  {
+    Random random(trial);
+    Scene scene(scrambled(sphere, 0.35, 10 + trial, onto_sphere), sphere);
+    const auto before = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
+    internal::Step_limits limits;
+    limits.density = before.worst;
+    limits.cosine = before.sharpest;
+    // back to where the regular mesh has its vertices, and a random way
+    Mover_to mover = scene.mover(0.02 * (trial % 5), random);
+    for(std::size_t v = 0; v < mover.ways.size(); ++v)
+      mover.ways[v] +=
+        sphere.points[scene.patch.vertices[v]] - 0.7 * scene.patch.placed[v].position;
+    Backtracking backtracking;
+    const typename Backtracking::Decision decision =
+      backtracking.decide(scene.patch, scene.samples, scene.state, mover, density, limits, true);
+    if(!decision.accepted)
+      continue;
+    ++accepted;
+    for(const double part : backtracking.steps())
+      cut += part < 1;
+    for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
+    {
+      const internal::Placed_vertex& now = backtracking.candidate()[v];
+      if(has_short_steps)
+        RCO_CHECK_LESS_EQUAL((now.position - scene.patch.placed[v].position).norm(),
+                             Short_steps::limit);
+      scene.state.vertices[scene.patch.vertices[v]] = now;
+    }
+    const auto after = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
+    RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
+    RCO_CHECK(after.defects() < before.defects() || after.energy < before.energy);
+    RCO_CHECK_LESS_EQUAL(after.worst, before.worst);
+    RCO_CHECK_LESS_EQUAL(after.sharpest, before.sharpest);
+    RCO_CHECK_NEAR(decision.after.energy, after.energy, 1e-9 * after.energy);
+  }
+  RCO_CHECK_LESS(20, accepted);
+  RCO_CHECK_LESS(100, cut);
+}
+
+// A step that inverts faces names their vertices, and is cut back.
+void test_inversion()
+{
+  Scope scope("inversion");
+  const Shape plane = equilateral_grid(6, 6);
+  Scene scene(scrambled(plane, 0.2, 1, onto_plane), plane);
+  Mover_to mover{std::vector<Vector_3>(scene.patch.vertices.size(), Vector_3::Zero()),
+                 scene.surface};
+  int moved = 0;
+  while(!scene.patch.is_free[moved])
+    ++moved;
+  mover.ways[moved] = Vector_3(1.6, 0.1, 0);
+  typedef internal::Backtracking_with<std::tuple<internal::Face_orientation>, std::tuple<>> Only;
+  const RCO::Exponential_MIPS_density density(1);
+  Only backtracking;
+  const auto decision =
+    backtracking.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true);
+  RCO_CHECK(decision.accepted);
+  RCO_CHECK_EQUAL(decision.after.defects(), 0);
+  RCO_CHECK(backtracking.steps()[moved] > 0 && backtracking.steps()[moved] < 1);
+
+  // without a rule it goes there
+  internal::Backtracking_with<std::tuple<>, std::tuple<>> none;
+  RCO_CHECK(
+    none.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true).accepted);
+  RCO_CHECK_EQUAL(none.steps()[moved], 1.);
+}
+
+int main()
+{
+  {
+    Scope scope("the invariants of the package");
+    test_random_steps<internal::Backtracking>(false);
+  }
+  {
+    Scope scope("one more");
+    Short_steps::limit = 0.02;
+    typedef decltype(std::tuple_cat(internal::Local_invariants(), std::tuple<Short_steps>())) Local;
+    test_random_steps<internal::Backtracking_with<Local, internal::Sum_invariants>>(true);
+  }
+  test_inversion();
+  return report();
+}
