@@ -14,8 +14,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Coordinates near the origin, in a unit of length that is about the reference's diagonal. The unit is a
-// power of two, and where the reference is not near the caller's origin the frame's is so close to it that
-// differences are exact: nothing near the reference is rounded on the way in, nor on the way back if it
+// power of two, and where the reference is not near the caller's origin the frame's is in its middle, so close
+// that differences are exact: nothing near the reference is rounded on the way in, nor on the way back if it
 // did not move. What moved is rounded to the caller's coordinates if these have another origin.
 class Frame
 {
@@ -32,7 +32,7 @@ public:
     const double far = 8;
     for(int i = 0; i < 3; ++i)
       if(std::abs(box.center()(i)) >= far * diagonal)
-        m_origin(i) = m_unit * std::round(box.center()(i) / m_unit);
+        m_origin(i) = box.center()(i);
   }
 
   // of length, in that of the caller
