@@ -145,7 +145,7 @@ eigen_version() {
     "$1/usr/share/eigen3/cmake/Eigen3ConfigVersion.cmake"
 }
 
-# the state of all files that results hang on
+# the state of all files that results depend on
 fingerprint() {
   cd "$root"
   find CMakeLists.txt cmake include test examples benchmark -type f -print0 |

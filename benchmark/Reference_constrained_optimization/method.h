@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-// whether --check has anything to check; what promises nothing need not be one of the above
-inline bool keeps_promises(const std::string& method)
+// whether --check has anything to check; a method without guarantees need not be one of the above
+inline bool has_guarantees(const std::string& method)
 {
   return method == "ours" || method == "plain";
 }
@@ -42,7 +42,7 @@ inline void set_method(const std::string& method,
   // of the surface what is left of the distortion spoils the result.
   p.mover.flattening.use_conformal = false;
   p.mover.flattening.use_mean_value = false;
-  p.mover.flattening.nearly_isometric = 4;
+  p.mover.flattening.target_distortion = 4;
   p.mover.flattening.maximum_descent_steps = 500;
   p.mover.flattening.descent_tolerance = 1e-6;
   // the minimum in the plane, and what comes back from it is kept

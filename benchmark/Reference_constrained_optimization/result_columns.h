@@ -4,9 +4,9 @@
 // Columns that the drivers have in common.
 
 #include "driver.h"
+#include "guarantees.h"
 #include "meshes.h"
 #include "method.h"
-#include "promises.h"
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
@@ -89,12 +89,14 @@ inline void add_times(Row& row, const Mesh& mesh, double seconds)
   row.add("us_per_vertex", 1e6 * seconds / double(mesh.number_of_vertices()));
 }
 
-// What --check finds: `broken_promises()` returns it, in words. Returns whether all holds.
-template <typename Broken_promises_function>
-bool add_check(Row& row, const std::string& method, const Broken_promises_function& broken_promises)
+// What --check finds: `violated_guarantees()` returns it, in words. Returns whether all holds.
+template <typename Violated_guarantees_function>
+bool add_check(Row& row,
+               const std::string& method,
+               const Violated_guarantees_function& violated_guarantees)
 {
-  const std::string broken = keeps_promises(method) ? broken_promises() : "";
-  row.add("violations", !keeps_promises(method) ? "-" : broken.empty() ? "none" : broken);
+  const std::string broken = has_guarantees(method) ? violated_guarantees() : "";
+  row.add("violations", !has_guarantees(method) ? "-" : broken.empty() ? "none" : broken);
   return broken.empty();
 }
 

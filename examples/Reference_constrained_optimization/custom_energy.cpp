@@ -20,9 +20,9 @@ namespace RCO = CGAL::Reference_constrained_optimization;
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Kernel;
 typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
-// model of DistortionDensity: D(J) = |J|^2 / 2 + b(det J). The first term wants small triangles,
-// the barrier b(t) = 1 / t large ones; they agree on J a rotation, where D = 2. Below t = 0.1 the
-// barrier is continued by a parabola with the same slope and bend, so that D is finite everywhere.
+// model of DistortionDensity: D(J) = |J|^2 / 2 + b(det J). The first term favours small triangles, the
+// barrier b(t) = 1 / t large ones; the minimum D = 2 is at rotations. Below t = 0.1 the barrier is
+// continued by a parabola with the same first and second derivative, so that D is finite everywhere.
 class Area_and_shape_density
 {
   typedef Eigen::Matrix2d Matrix;

@@ -13,15 +13,15 @@ set(rooms
     reference # the reference surface, its lines and features
     objective # the energy's elements and the barriers
     state # the mesh on its reference, and patches of it
-    reading # from the caller's meshes to the state
+    reading # from the user's meshes to the state
     selection # which faces make a patch, which patches a round
-    shape # distances and turns against the reference
+    shape # distances and normal deviations from the reference
     invariants # what no accepted step does
-    flattening # movers: patches that are laid flat
+    flattening # movers: flattened patches
     on_surface # movers: steps on the surface, search, clusters
     rounds # accept and commit
     stages # iterate, repair the worst, finish
-    writing # from the state to the caller's mesh
+    writing # from the state to the user's mesh
     landmark_map) # initial maps from landmarks
 
 set(prefix CGAL/Reference_constrained_optimization/internal)

@@ -152,7 +152,7 @@ double mean_dirichlet(const Shape& source, const Shape& mesh, double scale)
   return sum / double(source.faces.size());
 }
 
-// triangles that are turned over or worse than the cap count as the cap
+// triangles that are inverted or worse than the cap count as the cap
 double capped_energy(const Shape& source,
                      const Shape& mesh,
                      const internal::Reference_surface& surface,
@@ -190,14 +190,14 @@ bool same_connectivity(const Shape& a, const Shape& b)
 
 // -------------------------------------------------------------------- meshes on their surface
 
-// Vertices wander on a surface in small random steps; a step that would turn a face over or fold an
-// edge is not made. `mean_way` is how far they came, in their edge lengths.
+// Vertices move on a surface in small random steps; a step that would invert a face or fold an edge is not
+// made. `mean_displacement` is in edge lengths.
 Shape wandered(const Shape& shape,
                const internal::Reference_surface& surface,
                int number_of_steps,
                double step,
                std::uint64_t seed,
-               double& mean_way)
+               double& mean_displacement)
 {
   const Indexed_mesh mesh = indexed(shape);
   const int n = mesh.number_of_vertices();
@@ -245,7 +245,7 @@ Shape wandered(const Shape& shape,
         continue;
       const internal::Surface_point old_place = place[v];
       const Vector_3 old_point = result.points[v], old_normal = normals[v];
-      place[v] = surface.descend(old_point + move, old_place.face);
+      place[v] = surface.local_closest(old_point + move, old_place.face);
       result.points[v] = place[v].position;
       normals[v] = surface.normal(place[v]);
       if(!is_well(v))
@@ -255,9 +255,9 @@ Shape wandered(const Shape& shape,
         normals[v] = old_normal;
       }
     }
-  mean_way = 0;
+  mean_displacement = 0;
   for(int v = 0; v < n; ++v)
-    mean_way += (result.points[v] - shape.points[v]).norm() / length[v] / n;
+    mean_displacement += (result.points[v] - shape.points[v]).norm() / length[v] / n;
   return result;
 }
 
@@ -491,19 +491,19 @@ void test_energy_mismatches()
 void test_known_optimum(const std::string& name, const Shape& shape, std::uint64_t seed)
 {
   const Scope scope("back to " + name);
-  double way = 0;
+  double displacement = 0;
   const internal::Reference_surface surface(copy_of(shape));
-  const Shape start = wandered(shape, surface, 24, 0.3, seed, way);
+  const Shape start = wandered(shape, surface, 24, 0.3, seed, displacement);
   const Outcome out = optimized(shape, start, shape);
   RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
-  RCO_CHECK_LESS(0.4, way);
+  RCO_CHECK_LESS(0.4, displacement);
   RCO_CHECK_LESS(5., out.result.initial_energy);
   RCO_CHECK_LESS_EQUAL(out.distortion.mean, 2.001);
-  std::cout << name << ", " << shape.points.size() << " vertices, seed " << seed << ": " << way
-            << " edges moved, energy " << out.result.initial_energy << ", mean distortion "
-            << out.distortion.mean << ", largest " << out.distortion.maximum << ", "
-            << out.result.number_of_iterations << " iterations, " << out.result.running_time << " s"
-            << std::endl;
+  std::cout << name << ", " << shape.points.size() << " vertices, seed " << seed << ": "
+            << displacement << " edges moved, energy " << out.result.initial_energy
+            << ", mean distortion " << out.distortion.mean << ", largest " << out.distortion.maximum
+            << ", " << out.result.number_of_iterations << " iterations, " << out.result.running_time
+            << " s" << std::endl;
 }
 
 void test_known_optima()
@@ -1036,7 +1036,7 @@ bool check_flattening(const Shape& shape,
   {
     tree.add_border(border);
     for(std::size_t i = 0; i < border.size(); ++i)
-      cut.lay_border_arc(border[i], border[(i + 1) % border.size()]);
+      cut.trace_border_arc(border[i], border[(i + 1) % border.size()]);
   }
   for(const auto& e : edges)
   {
@@ -1056,7 +1056,7 @@ bool check_flattening(const Shape& shape,
     // with all chords split there is always a way
     if(!RCO_CHECK(std::isfinite(least)))
       return false;
-    cut.lay_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from, e.second));
+    cut.trace_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from, e.second));
     tree.add_path(e.first, from, e.second, to);
   }
   check_boundary(tree);
@@ -1258,7 +1258,7 @@ struct Right_tag
   typedef Eigen::VectorXd internal::Projected_newton::*type;
   friend type member(Right_tag);
 };
-template struct Access<Right_tag, &internal::Projected_newton::m_right>;
+template struct Access<Right_tag, &internal::Projected_newton::m_rhs>;
 struct Assemble_tag
 {
   typedef double (internal::Projected_newton::*type)(const internal::Tangent_problem&,
@@ -1274,8 +1274,8 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
 {
   const Scope scope("on-surface steps, " + name);
   internal::Reference_surface surface(copy_of(shape));
-  double way = 0;
-  const Shape start = wandered(shape, surface, 4, 0.2, 3, way);
+  double displacement = 0;
+  const Shape start = wandered(shape, surface, 4, 0.2, 3, displacement);
   const internal::Mesh_copy copy = copy_of(start);
   const Energy energy(make_mesh<Mesh>(shape));
   const RCO::Energy_context context(copy.mesh.face_begin, copy.mesh.corner_vertex,
@@ -1285,7 +1285,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   for(const char is_border : copy.mesh.is_border_vertex)
     state.is_free.push_back(!is_border);
   RCO::Result unused;
-  internal::place_on_reference(copy.points, surface, state, unused);
+  internal::locate_on_reference(copy.points, surface, state, unused);
   std::vector<int> faces;
   for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
   {
@@ -1312,13 +1312,13 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   };
   // the energy in space, of which the problem is the first order
   const auto value_in_space = [&](const std::vector<Vector_2>& u) {
-    std::vector<internal::Placed_vertex> placed = patch.placed;
+    std::vector<internal::Located_vertex> placed = patch.located;
     for(int v = 0; v < n; ++v)
       placed[v].position += frames[v] * u[v];
     double sum = 0;
     for(const internal::Element_set::Element& e : patch.elements)
       sum += internal::element_energy(
-        density, e, [&](int v) -> const internal::Placed_vertex& { return placed[v]; });
+        density, e, [&](int v) -> const internal::Located_vertex& { return placed[v]; });
     return sum;
   };
   std::vector<Vector_2> u(n, Vector_2::Zero());
@@ -1336,7 +1336,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   {
     RCO_CHECK_NEAR((frames[v].transpose() * frames[v] - Eigen::Matrix2d::Identity()).norm(), 0.,
                    1e-14);
-    const internal::Surface_point& at = patch.placed[v].on_reference;
+    const internal::Surface_point& at = patch.located[v].on_reference;
     // the plane is that of a face of R on which the vertex lies
     double angle = 1;
     for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
@@ -1380,8 +1380,8 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   for(int v = 0; v < n; ++v)
     for(const double t : {1., 0.4, 1e-3})
     {
-      internal::Placed_vertex p;
-      if(!patch.is_free[v] || !mover.place(patch, v, t, p))
+      internal::Located_vertex p;
+      if(!patch.is_free[v] || !mover.displaced_vertex(patch, v, t, p))
         continue;
       ++placed;
       RCO_CHECK_LESS((surface.closest(p.position).position - p.position).norm(), 1e-13);
@@ -1391,7 +1391,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
         surface.point(p.on_reference.face, p.on_reference.barycentric);
       RCO_CHECK_LESS((again.position - p.position).norm(), 1e-13);
       RCO_CHECK_LESS((surface.normal(again) - p.normal).norm(), 1e-12);
-      RCO_CHECK_LESS(0., p.normal.dot(patch.placed[v].normal));
+      RCO_CHECK_LESS(0., p.normal.dot(patch.located[v].normal));
     }
   // almost none is refused
   RCO_CHECK_LESS_EQUAL(0.9 * 3 * patch.number_of_free_vertices, double(placed));

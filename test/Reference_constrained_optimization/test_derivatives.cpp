@@ -143,7 +143,7 @@ void test_general(const Density& density)
       RCO_CHECK(std::isfinite(density.projected_derivatives(J, g, h)));
       RCO_CHECK(g.allFinite() && h.allFinite());
     }
-  // inversion costs more than any sound shape
+  // inversion costs more than any valid shape
   for(const double s : {0.5, 0.2, 0.01})
     RCO_CHECK_LESS(density.value(with_singular_values(1, s, random)),
                    density.value(with_singular_values(1, -s, random)));
@@ -620,7 +620,7 @@ void test_drift_barrier()
                                                  low = barrier.derivatives(r - h, bound),
                                                  high = barrier.derivatives(r + h, bound);
       RCO_CHECK_NEAR(d.value, barrier.value(r, bound), 1e-12 * d.value);
-      RCO_CHECK_EQUAL(d.value > 0, internal::Drift_barrier::is_felt(r, bound));
+      RCO_CHECK_EQUAL(d.value > 0, internal::Drift_barrier::is_active(r, bound));
       RCO_CHECK_NEAR(d.first, (high.value - low.value) / (2 * h), 1e-4 * (d.first + 1 / bound));
       RCO_CHECK_NEAR(d.second, (high.first - low.first) / (2 * h),
                      1e-2 * (d.second + 1 / (bound * bound)));
@@ -630,7 +630,7 @@ void test_drift_barrier()
   }
 }
 
-// samples all over a patch, of which those at edges and faces and some of R's vertices are felt
+// samples all over a patch; the barrier is active at those of edges and faces and at some of R's vertices
 internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& random)
 {
   internal::Patch_samples result;
@@ -650,11 +650,11 @@ internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& r
     }
   for(int f = 0; f < n; f += 2)
   {
-    internal::Patch_samples::Guest guest{f, f, random(0, 0.36), 0.3};
-    guest.triangle = f;
-    guest.barycentric = Vector_3(0.2, 0.5, 0.3);
-    guest.direction = direction();
-    result.guests.push_back(guest);
+    internal::Patch_samples::Projected_sample projected_sample{f, f, random(0, 0.36), 0.3};
+    projected_sample.triangle = f;
+    projected_sample.barycentric = Vector_3(0.2, 0.5, 0.3);
+    projected_sample.direction = direction();
+    result.projected_samples.push_back(projected_sample);
   }
   return result;
 }
@@ -728,12 +728,12 @@ void test_newton_step(const Density& density)
       for(internal::Tangent_frame& m : motions)
         for(int i = 0; i < 6; ++i)
           m(i / 2, i % 2) = random(-0.05, 0.05);
-      problem.carriers = internal::drift_carriers(patch, samples);
+      problem.term_triangles = internal::drift_term_triangles(patch, samples);
       problem.drift.collect(patch, samples, [&](int v) { return motions[v]; });
       RCO_CHECK(problem.drift.terms().size() > 10);
       const auto add = [&](const int* corners, const Vector_3& barycentric, double distance,
                            double bound, const Vector_3& direction) {
-        if(!internal::Drift_barrier::is_felt(distance, bound))
+        if(!internal::Drift_barrier::is_active(distance, bound))
           return;
         Eigen::VectorXd row = Eigen::VectorXd::Zero(2 * n);
         double r = distance;
@@ -751,7 +751,7 @@ void test_newton_step(const Density& density)
       for(int s = 0; s < int(samples.samples.size()); ++s)
         add(&patch.polygons.corner_vertex[s / 4 * 3], internal::sample_barycentric(s % 4),
             samples.samples[s].distance, samples.bound, samples.samples[s].direction);
-      for(const internal::Patch_samples::Guest& g : samples.guests)
+      for(const internal::Patch_samples::Projected_sample& g : samples.projected_samples)
         add(&patch.polygons.corner_vertex[3 * g.triangle], g.barycentric, g.distance, g.bound,
             g.direction);
     }
@@ -854,7 +854,7 @@ void test_surface_metric()
     if(shape_up.determinant() > 0.02 * shape_up.squaredNorm() &&
        plane.determinant() > 0.02 * plane.squaredNorm())
       RCO_CHECK_LESS_EQUAL((metric * plane - shape_up).norm(), 1e-9);
-    // where one side is turned round there is no metric to speak of
+    // where one side is reversed there is no metric
     RCO_CHECK(internal::surface_metric(plane, -shape_up * Vector_2(1, -1).asDiagonal(), 3) ==
               3 * Matrix_2::Identity());
   }

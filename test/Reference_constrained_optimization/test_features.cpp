@@ -156,7 +156,7 @@ void check_cube(const Shape& start, const Energy& energy)
   RCO_CHECK_LESS(RCO::normal_deviation(mesh, before).maximum, 1e-6);
   RCO_CHECK_NEAR(RCO::feature_deviation(before, mesh).kept, 1, 1e-9);
 
-  // a copy of the mesh is no other reference
+  // a copy of the mesh counts as the mesh itself
   Mesh same = before;
   CGAL::reference_constrained_optimize(same, before, energy, params::random_seed(1));
   RCO_CHECK(same_bits(make_shape(same), after.shape));

@@ -61,12 +61,12 @@ double planar_area(const Indexed_mesh& mesh, const std::vector<Vector_2>& u)
 
 struct Expected
 {
-  double distortion = 1e6;          // with both ways to flatten
+  double distortion = 1e6;          // with both parameterizations
   double fallback_distortion = 1e6; // with the convex border alone
   bool keeps_area = true;
 };
 
-// all that a flattening promises, by each way: conformal, mean-value coordinates, equal weights
+// all guarantees of a flattening, by each method: conformal, mean-value coordinates, equal weights
 void test_flattening(const Shape& shape, const std::string& name, const Expected& expected)
 {
   const Indexed_mesh mesh = indexed(shape);
@@ -266,7 +266,7 @@ void test_conformal_maps()
     {"three quarters of an icosahedron", part({0, 1, 2, 3, 4})},
     {"half an icosahedron", part({0, 1, 2, 3, 4, 5, 6, 7, 8, 9})}};
   internal::Flattening_parameters ours;
-  ours.nearly_isometric = ours.conformal_limit = 1e6; // no descent
+  ours.target_distortion = ours.largest_conformal_distortion = 1e6; // no descent
   internal::Flattening_parameters cgal = ours;
   cgal.use_conformal_of_cgal = true;
   for(const auto& named : shapes)
@@ -541,7 +541,7 @@ void test_walk_on(const Shape& shape, const std::string& name, bool is_convex)
   }
   else
   {
-    // a bay of the border may be in the way, also of a star that is not convex
+    // the border may be in between, also in a star that is not convex
     RCO_CHECK_EQUAL(at_vertices.lost, 0);
     RCO_CHECK_EQUAL(on_edges.lost, 0);
     RCO_CHECK_LESS_EQUAL(near_by.lost, near_by.found / 20);

@@ -11,7 +11,7 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/Defect_repair.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
@@ -256,7 +256,7 @@ void test_ranges()
     }
   }
   {
-    const Scope s("what is outside is its own affair");
+    const Scope s("nothing is required of the faces outside");
     // two components: one on the reference, one far away, and with a quad
     Shape two = joined(rough, torus(10, 6), Vector_3(50, 0, 0));
     two.faces.push_back(
@@ -334,7 +334,7 @@ Mesh moved_mesh(Shape shape, const Place& place)
   return make_mesh<Mesh>(shape);
 }
 
-// What is bad of a mesh on a reference, and its angles.
+// Defects of a mesh on a reference, and its angles.
 struct Quality
 {
   Quality(const Mesh& mesh, const Mesh& reference)
@@ -453,7 +453,7 @@ void test_places()
   }
 }
 
-// There may be no fold more at the end where edges are nearly folded. (A fuzzer found one.)
+// The number of folds does not increase where edges are nearly folded. (Found by a fuzzer.)
 void test_nearly_folded()
 {
   const Scope scope("ridges at the limit of a fold");
@@ -485,7 +485,7 @@ void test_nearly_folded()
   }
 }
 
-// Nothing near the reference is rounded on the way into the frame and back.
+// Points near the reference are not rounded by the transformation to the frame and back.
 void test_frame()
 {
   const Scope scope("frame");
@@ -496,7 +496,7 @@ void test_frame()
   const auto number_of_changes = [](const Frame& frame, const Mesh_copy& copy) {
     std::size_t number = 0;
     for(const Vector_3& p : copy.points)
-      number += frame.to_caller(frame(p)) != p;
+      number += frame.to_user(frame(p)) != p;
     return number;
   };
   const double largest = (std::numeric_limits<double>::max)();
@@ -519,15 +519,15 @@ void test_frame()
         number_of_others += frame.unit() * (frame(p) - frame(q)) != p - q;
       }
       RCO_CHECK_EQUAL(number_of_others, 0u);
-      // what the caller gets is seen as it is
+      // the user's coordinates are measured without rounding
       const Vector_3 moved = frame(copy.points[0]) + Vector_3(0.1, -0.2, 1. / 3),
-                     got = frame.to_caller(moved);
-      RCO_CHECK(same_bits(frame.to_caller(frame(got)), got));
+                     got = frame.to_user(moved);
+      RCO_CHECK(same_bits(frame.to_user(frame(got)), got));
       const double ulp = std::numeric_limits<double>::epsilon();
       RCO_CHECK_LESS_EQUAL((frame(got) - moved).norm(), ulp * (2 + frame.distance_of_origin()));
       if(shift.isZero())
         RCO_CHECK(same_bits(frame(got), moved));
-      // half as large, and a vertex that is anywhere and belongs to no face
+      // half as large, and an isolated vertex anywhere
       for(Vector_3& p : copy.points)
         p *= 0.5;
       copy.mesh =
@@ -536,7 +536,7 @@ void test_frame()
       const Frame half(copy);
       RCO_CHECK(same_bits(half(copy.points[7]), frame(2 * copy.points[7])));
     }
-  // what is refused afterwards stays as it is
+  // invalid input remains unchanged
   for(const double factor : {0., 1e-170, 1e-70, 1e70, 1e160, 1e300})
   {
     Mesh_copy copy = copy_of(shape);
@@ -548,13 +548,13 @@ void test_frame()
   }
 }
 
-// What is wrong in the end is mended where it is, and only there.
-void test_mending()
+// Defects at the end are repaired locally.
+void test_defect_repair()
 {
-  const Scope scope("mending");
+  const Scope scope("repair");
   using namespace RCO::internal;
-  typedef Mending<CGAL::Sequential_tag> Sequential_mending;
-  typedef std::vector<Placed_vertex> Vertices;
+  typedef Defect_repair<CGAL::Sequential_tag> Sequential_defect_repair;
+  typedef std::vector<Located_vertex> Vertices;
   const int n = 12;
   const auto id = [](int i, int j) { return j * (n + 1) + i; };
   const auto with_state = [&](bool quads, const Shape& given, const auto& test) {
@@ -567,14 +567,16 @@ void test_mending()
     Optimization_state state{copy.mesh, surface, elements, {}, {}};
     state.is_free.assign(copy.points.size(), 1);
     RCO::Result unused;
-    place_on_reference(copy.points, surface, state, unused);
+    locate_on_reference(copy.points, surface, state, unused);
     const Vertices start = state.vertices;
     const auto move = [&](int v, double dx, double dy) {
       const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
       state.vertices[v].on_reference = surface.closest(p);
       state.vertices[v].position = p;
     };
-    const auto flaws = [&]() { return find_flaws<CGAL::Sequential_tag>(state, state.vertices); };
+    const auto flaws = [&]() {
+      return find_output_defects<CGAL::Sequential_tag>(state, state.vertices);
+    };
     const auto is_at = [&](int v, const Vertices& vertices) {
       return same_bits(state.vertices[v].position, vertices[v].position) &&
              same_bits(state.vertices[v].on_reference.barycentric,
@@ -584,15 +586,15 @@ void test_mending()
   };
   const Shape triangles = plane_grid(n, n, n);
   {
-    const Scope s("faces that are turned over");
+    const Scope s("faces that are inverted");
     with_state(false, triangles,
                [&](Optimization_state& state, const Vertices& start, const auto& move,
                    const auto& flaws, const auto& is_at) {
                  move(id(3, 3), 1.6, 0.1);
-                 Sequential_mending mending(state, start);
+                 Sequential_defect_repair repair(state, start);
                  RCO_CHECK_LESS(std::size_t(0), flaws().number);
-                 mending.run();
-                 RCO_CHECK(mending.has_mended());
+                 repair.run();
+                 RCO_CHECK(repair.has_restored_vertices());
                  RCO_CHECK(is_at(id(3, 3), start));
                });
   }
@@ -600,7 +602,7 @@ void test_mending()
   Shape thin = triangles;
   thin.points[id(1, 1)].x() += 0.95;
   {
-    // three columns have moved, one vertex too far: others would be turned over if it returned alone
+    // three columns have moved, one vertex too far: others would be inverted if it returned alone
     const Scope s("what is around");
     with_state(false, thin,
                [&](Optimization_state& state, const Vertices& start, const auto& move,
@@ -613,15 +615,15 @@ void test_mending()
                  move(id(10, 10), 0.2, 0.1);
                  const Vertices gained = state.vertices;
                  RCO_CHECK_LESS(std::size_t(0), flaws().number);
-                 Sequential_mending mending(state, start);
-                 mending.run();
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
                  RCO_CHECK_EQUAL(flaws().number, std::size_t(0));
                  RCO_CHECK(is_at(id(3, 6), start));
                  RCO_CHECK(is_at(id(10, 10), gained));
                });
   }
   {
-    const Scope s("an angle that is smaller by a hair");
+    const Scope s("an angle that is slightly smaller");
     with_state(false, thin,
                [&](Optimization_state& state, const Vertices& start, const auto& move,
                    const auto& flaws, const auto& is_at) {
@@ -630,15 +632,15 @@ void test_mending()
                  move(id(1, 1), 1e-9, 0);
                  RCO_CHECK_LESS(flaws().smallest_angle, smallest);
                  const Vertices gained = state.vertices;
-                 Sequential_mending mending(state, start);
-                 mending.run();
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
                  RCO_CHECK_EQUAL(flaws().smallest_angle, smallest);
                  RCO_CHECK(is_at(id(1, 1), start));
                  RCO_CHECK(is_at(id(8, 8), gained));
                });
   }
   {
-    const Scope s("a quad that is not convex, by a hair");
+    const Scope s("a quad that is slightly non-convex");
     with_state(true, plane_grid(n, n, n, true),
                [&](Optimization_state& state, const Vertices& start, const auto& move,
                    const auto& flaws, const auto& is_at) {
@@ -646,9 +648,9 @@ void test_mending()
                  move(id(9, 9), 0.2, 0.1);
                  RCO_CHECK_EQUAL(flaws().number, std::size_t(1));
                  const Vertices gained = state.vertices;
-                 Sequential_mending mending(state, start);
-                 mending.run();
-                 RCO_CHECK(mending.has_mended());
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK(repair.has_restored_vertices());
                  RCO_CHECK_EQUAL(flaws().number, std::size_t(0));
                  RCO_CHECK(is_at(id(3, 3), start));
                  RCO_CHECK(is_at(id(9, 9), gained));
@@ -662,13 +664,13 @@ void test_mending()
                  move(id(9, 9), 0.1, 0);
                  move(id(5, 4), 0.2, 0.1);
                  const Vertices moved = state.vertices;
-                 Sequential_mending mending(state, start);
-                 mending.run();
-                 RCO_CHECK(!mending.has_mended());
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK(!repair.has_restored_vertices());
                  const auto density = RCO::Minimum_angle_energy().density();
-                 RCO_CHECK(mending.grow(density));
+                 RCO_CHECK(repair.grow(density));
                  RCO_CHECK(is_at(id(5, 4), start) && is_at(id(9, 9), moved));
-                 while(mending.grow(density))
+                 while(repair.grow(density))
                  {}
                  RCO_CHECK(is_at(id(9, 9), start));
                });
@@ -678,7 +680,7 @@ void test_mending()
 int main()
 {
   test_models();
-  test_mending();
+  test_defect_repair();
   test_places();
   test_nearly_folded();
   test_frame();

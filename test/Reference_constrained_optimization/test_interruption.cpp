@@ -122,7 +122,7 @@ double energy(const Mesh& m, const Mesh& reference, const Scene& scene)
     .initial_energy;
 }
 
-// what holds at any moment
+// invariants at any moment
 void check_state(const Mesh& mesh, const Mesh& reference, const Scene& scene)
 {
   const Mesh start = make_mesh<Mesh>(scene.start);

@@ -2,7 +2,7 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What no accepted step does: backtracking over a list of invariants, and one more than the package has.
+// Accepted steps obey all invariants of a list, also additional ones.
 
 #include "test_meshes.h"
 
@@ -21,7 +21,7 @@ namespace RCO = CGAL::Reference_constrained_optimization;
 namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
-// An invariant of one's own: no vertex goes further than a length.
+// A user-defined invariant: a bound on the displacement of vertices.
 struct Short_steps : internal::Invariant
 {
   static double limit;
@@ -29,8 +29,8 @@ struct Short_steps : internal::Invariant
   bool holds(const internal::Trial& trial, internal::Violating_vertices& violating) const
   {
     bool holds = true;
-    for(int v = 0; v < int(trial.placed.size()); ++v)
-      if((trial.placed[v].position - trial.patch.placed[v].position).norm() > limit)
+    for(int v = 0; v < int(trial.located.size()); ++v)
+      if((trial.located[v].position - trial.patch.located[v].position).norm() > limit)
       {
         holds = false;
         violating.add(v);
@@ -40,17 +40,17 @@ struct Short_steps : internal::Invariant
 };
 double Short_steps::limit = 0;
 
-// proposes to take every vertex to where it is told
+// proposes the given positions of all vertices
 struct Mover_to
 {
   std::vector<Vector_3> ways;
   const internal::Reference_surface& surface;
 
-  bool place(const internal::Patch& patch, int v, double t, internal::Placed_vertex& result) const
+  bool place(const internal::Patch& patch, int v, double t, internal::Located_vertex& result) const
   {
-    return internal::step_on_surface(surface, patch.placed[v], t * ways[v], result);
+    return internal::step_on_surface(surface, patch.located[v], t * ways[v], result);
   }
-  double motion_length(int v) const { return ways[v].norm(); }
+  double displacement_length(int v) const { return ways[v].norm(); }
 };
 
 // a scrambled mesh on its surface, all of it one patch
@@ -74,28 +74,28 @@ struct Scene
     for(const char is_border : copy.mesh.is_border_vertex)
       state.is_free.push_back(!is_border);
     RCO::Result unused;
-    internal::place_on_reference<CGAL::Sequential_tag>(copy.points, surface, state, unused);
+    internal::locate_on_reference<CGAL::Sequential_tag>(copy.points, surface, state, unused);
     std::vector<int> faces;
     for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
       faces.push_back(f);
     patch = internal::Patch_builder(copy.mesh).build(faces, state);
-    internal::Drift_guard guard;
+    internal::Shape_bound guard;
     guard.initialize<CGAL::Sequential_tag>(state, 0.1, true, internal::Drift_barrier(1));
     samples = guard.gather(state, patch);
   }
 
-  // what Newton's method proposes, with steps that are far too long
+  // steps of Newton's method that are far too long
   Mover_to mover(double length, Random& random) const
   {
     Mover_to result{{}, surface};
-    for(const internal::Placed_vertex& v : patch.placed)
+    for(const internal::Located_vertex& v : patch.located)
       result.ways.push_back(length * Vector_3(random(-1, 1), random(-1, 1), random(-1, 1)) -
                             0.3 * v.position);
     return result;
   }
 };
 
-// Random steps of all lengths: whatever is accepted obeys the invariants, measured anew.
+// Random steps of all lengths: accepted ones obey the invariants, measured independently.
 template <typename Backtracking>
 void test_random_steps(bool has_short_steps)
 {
@@ -109,12 +109,12 @@ void test_random_steps(bool has_short_steps)
     const auto before = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
     internal::Step_limits limits;
     limits.density = before.worst;
-    limits.cosine = before.sharpest;
-    // back to where the regular mesh has its vertices, and a random way
+    limits.cosine = before.largest_cosine;
+    // back to the regular mesh, plus a random displacement
     Mover_to mover = scene.mover(0.02 * (trial % 5), random);
     for(std::size_t v = 0; v < mover.ways.size(); ++v)
       mover.ways[v] +=
-        sphere.points[scene.patch.vertices[v]] - 0.7 * scene.patch.placed[v].position;
+        sphere.points[scene.patch.vertices[v]] - 0.7 * scene.patch.located[v].position;
     Backtracking backtracking;
     const typename Backtracking::Decision decision =
       backtracking.decide(scene.patch, scene.samples, scene.state, mover, density, limits, true);
@@ -125,9 +125,9 @@ void test_random_steps(bool has_short_steps)
       cut += part < 1;
     for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
     {
-      const internal::Placed_vertex& now = backtracking.candidate()[v];
+      const internal::Located_vertex& now = backtracking.candidate()[v];
       if(has_short_steps)
-        RCO_CHECK_LESS_EQUAL((now.position - scene.patch.placed[v].position).norm(),
+        RCO_CHECK_LESS_EQUAL((now.position - scene.patch.located[v].position).norm(),
                              Short_steps::limit);
       scene.state.vertices[scene.patch.vertices[v]] = now;
     }
@@ -135,14 +135,14 @@ void test_random_steps(bool has_short_steps)
     RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
     RCO_CHECK(after.defects() < before.defects() || after.energy < before.energy);
     RCO_CHECK_LESS_EQUAL(after.worst, before.worst);
-    RCO_CHECK_LESS_EQUAL(after.sharpest, before.sharpest);
+    RCO_CHECK_LESS_EQUAL(after.largest_cosine, before.largest_cosine);
     RCO_CHECK_NEAR(decision.after.energy, after.energy, 1e-9 * after.energy);
   }
   RCO_CHECK_LESS(20, accepted);
   RCO_CHECK_LESS(100, cut);
 }
 
-// A step that inverts faces names their vertices, and is cut back.
+// The vertices of faces that a step inverts are violating, and the step is reduced.
 void test_inversion()
 {
   Scope scope("inversion");
@@ -163,7 +163,7 @@ void test_inversion()
   RCO_CHECK_EQUAL(decision.after.defects(), 0);
   RCO_CHECK(backtracking.steps()[moved] > 0 && backtracking.steps()[moved] < 1);
 
-  // without a rule it goes there
+  // without this invariant it is accepted
   internal::Backtracking_with<std::tuple<>, std::tuple<>> none;
   RCO_CHECK(
     none.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true).accepted);

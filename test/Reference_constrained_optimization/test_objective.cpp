@@ -26,7 +26,7 @@ using namespace rco_test;
 typedef CGAL::Simple_cartesian<double> Kernel;
 typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
-// moves a mesh within the surface that it is on, and checks what holds for every energy
+// optimizes a mesh on itself as reference, and checks properties that hold for every energy
 template <typename Energy, typename NamedParameters>
 Shape optimized(const Shape& start,
                 const Shape& surface,
@@ -53,8 +53,8 @@ int center_of(const Shape& s, const Vector_3& p)
   return best;
 }
 
-// A vertex that is pulled hard enough slides to the point of R that is closest to its target; one that is
-// pulled less ends in between. Weight 0 changes no bit.
+// A vertex with a large weight moves to the point of R that is closest to its target; with a smaller one it
+// ends in between. Weight 0 has no effect.
 void test_attraction()
 {
   Scope scope("attraction");
@@ -99,8 +99,8 @@ void test_attraction()
   RCO_CHECK_LESS((moved.points[pole] - closest).norm(), 0.006);
 }
 
-// Six vertices that want to lie on one line: the sum of squared second differences along a row. Its
-// derivatives are left to the library.
+// Stencils of six vertices that are zero for collinear ones: the sum of squared second differences along a
+// row. Derivatives are computed by the library.
 struct Straight_rows
 {
   static constexpr int stencil_size = 6;
@@ -128,7 +128,7 @@ struct Straight_rows
   }
 };
 
-// Rows of a scrambled grid come straight; the sum falls although stencils reach across patches.
+// Rows of a scrambled grid become straight; the sum decreases although stencils reach across patches.
 void test_wide_stencils()
 {
   Scope scope("stencils of six vertices");
@@ -149,7 +149,7 @@ void test_wide_stencils()
     }
     return sum;
   };
-  // the first summand would rather have it stay as it is
+  // the first summand has its minimum at the input
   const RCO::Compatible_remeshing_energy stay(make_mesh<Mesh>(start));
   for(const int size : {0, 60}) // many small patches, too
   {
@@ -159,7 +159,7 @@ void test_wide_stencils()
   }
 }
 
-// what a summand adds is what it says, and the same as an element's weight
+// a summand adds its energy; its weight is equivalent to the weight of elements
 struct Weighted_angle_energy : RCO::Minimum_angle_energy
 {
   double weight;
@@ -230,7 +230,7 @@ void test_errors()
   RCO_CHECK_THROWS(run(Weighted_angle_energy(0)), RCO::Invalid_input, "weight");
 }
 
-// What Newton's method is told of a stencil against differences of its value, along the frames.
+// The derivatives of a stencil are compared with differences of its value, along the frames.
 void test_stencil_derivatives()
 {
   Scope scope("stencil derivatives");

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Steps on the surface: patches that are not flattened, parts of steps, ways into faces of the
-// reference, the barrier on angles, the finishing stage as a whole, larger patches after a rest, and clusters of vertices.
+// Steps on the surface: patches that are not flattened, step sizes, faces in a direction, the barrier on
+// angles, the finishing stage as a whole, restarts, and clusters of vertices.
 
 #include "test_meshes.h"
 
@@ -14,8 +14,8 @@
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/point_index.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Angle_barrier_density.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
-#include <CGAL/Reference_constrained_optimization/internal/rounds/step_field.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_in_direction.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Vertex_step_sizes.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Simple_cartesian.h>
@@ -54,12 +54,12 @@ bool is_connected(const Indexed_mesh& mesh, const std::vector<int>& faces)
 }
 
 Patches
-divided(const Indexed_mesh& mesh, const std::vector<char>& is_wanted, int size, unsigned int seed)
+divided(const Indexed_mesh& mesh, const std::vector<char>& is_selected, int size, unsigned int seed)
 {
   internal::Patch_partition partition(mesh, size);
   RCO_CHECK_EQUAL(partition.patch_size(), size);
   CGAL::Random random(seed);
-  const Patches patches = partition.divide(is_wanted, random);
+  const Patches patches = partition.divide(is_selected, random);
 
   std::vector<int> times(mesh.number_of_faces(), 0);
   std::size_t previous = times.size();
@@ -74,20 +74,20 @@ divided(const Indexed_mesh& mesh, const std::vector<char>& is_wanted, int size, 
     RCO_CHECK(is_connected(mesh, patch));
   }
   for(int f = 0; f < mesh.number_of_faces(); ++f)
-    RCO_CHECK_EQUAL(times[f], int(is_wanted[f] != 0));
+    RCO_CHECK_EQUAL(times[f], int(is_selected[f] != 0));
 
   // an object that has divided something else before gives the same
   internal::Patch_partition used(mesh, 7 * size);
   CGAL::Random other(seed + 1), again(seed);
-  used.divide(is_wanted, other);
+  used.divide(is_selected, other);
   used.set_patch_size(size);
-  RCO_CHECK(used.divide(is_wanted, again) == patches);
+  RCO_CHECK(used.divide(is_selected, again) == patches);
 
   // whole regions: again all wanted faces once, and none that touches another unless it was too large
   CGAL::Random third(seed);
   std::vector<int> patch_of(mesh.number_of_faces(), -1);
   int number = 0;
-  for(const std::vector<int>& patch : used.divide_regions(is_wanted, third))
+  for(const std::vector<int>& patch : used.divide_regions(is_selected, third))
   {
     RCO_CHECK(is_connected(mesh, patch));
     for(const int f : patch)
@@ -100,7 +100,7 @@ divided(const Indexed_mesh& mesh, const std::vector<char>& is_wanted, int size, 
   int touching = 0;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
-    RCO_CHECK_EQUAL(patch_of[f] >= 0, is_wanted[f] != 0);
+    RCO_CHECK_EQUAL(patch_of[f] >= 0, is_selected[f] != 0);
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       if(mesh.opposite[c] >= 0 && patch_of[f] >= 0)
       {
@@ -108,7 +108,7 @@ divided(const Indexed_mesh& mesh, const std::vector<char>& is_wanted, int size, 
         touching += other >= 0 && other != patch_of[f];
       }
   }
-  const bool any_large = std::count(is_wanted.begin(), is_wanted.end(), char(1)) > 3 * size;
+  const bool any_large = std::count(is_selected.begin(), is_selected.end(), char(1)) > 3 * size;
   RCO_CHECK(any_large || touching == 0);
   return patches;
 }
@@ -158,10 +158,10 @@ void test_partition()
     for(const double share : {0.002, 0.1, 0.5, 0.9})
       for(unsigned int seed = 0; seed < 5; ++seed)
       {
-        std::vector<char> is_wanted(mesh.number_of_faces());
-        for(char& w : is_wanted)
+        std::vector<char> is_selected(mesh.number_of_faces());
+        for(char& w : is_selected)
           w = random() < share;
-        divided(mesh, is_wanted, 30, seed);
+        divided(mesh, is_selected, 30, seed);
       }
     std::vector<char> one(mesh.number_of_faces(), 0);
     one[17] = 1;
@@ -174,10 +174,10 @@ void test_partition()
 struct Fake_mover
 {
   std::vector<double> length;
-  double motion_length(int v) const { return length[v]; }
+  double displacement_length(int v) const { return length[v]; }
 };
 
-// a patch as far as a step field looks at it; what may slide is free at the border, too
+// the data of a patch that step sizes depend on; vertices that slide are free at the border, too
 internal::Patch patch_of(const Shape& shape, bool slides)
 {
   internal::Patch patch;
@@ -186,20 +186,20 @@ internal::Patch patch_of(const Shape& shape, bool slides)
   {
     patch.vertices.push_back(v);
     patch.is_free.push_back(patch.polygons.is_border_vertex[v] ? slides && v % 7 > 0 : v % 50 > 0);
-    patch.placed.emplace_back();
-    patch.placed.back().position = shape.points[v];
+    patch.located.emplace_back();
+    patch.located.back().position = shape.points[v];
   }
   return patch;
 }
 
 double largest_difference(const internal::Patch& patch, const Fake_mover& mover, int a, int b)
 {
-  const double edge = (patch.placed[a].position - patch.placed[b].position).norm();
-  const double way = (std::max)(mover.length[a], mover.length[b]);
-  return way > 0 ? (std::min)(0.2, 0.3 * edge / way) : 0.2;
+  const double edge = (patch.located[a].position - patch.located[b].position).norm();
+  const double displacement = (std::max)(mover.length[a], mover.length[b]);
+  return displacement > 0 ? (std::min)(0.2, 0.3 * edge / displacement) : 0.2;
 }
 
-// Every try is written down; it succeeds up to what a vertex can do.
+// Records every trial; it succeeds up to a given fraction of each vertex.
 struct Tries
 {
   std::vector<double> most, last;
@@ -207,24 +207,24 @@ struct Tries
   explicit Tries(std::size_t n) : most(n, 1), last(n, -1), number(n, 0) {}
   auto function()
   {
-    return [this](int v, double part) {
-      RCO_CHECK(part >= 0 && part <= 1);
-      last[v] = part;
+    return [this](int v, double fraction) {
+      RCO_CHECK(fraction >= 0 && fraction <= 1);
+      last[v] = fraction;
       ++number[v];
-      return part <= most[v];
+      return fraction <= most[v];
     };
   }
 };
 
-// `may_be` is what a vertex could have had for itself
-void check_parts(const internal::Patch& patch,
-                 const Fake_mover& mover,
-                 const internal::Step_field& field,
-                 const Tries& tries,
-                 const std::vector<double>* may_be = nullptr)
+// `may_be` is the fraction of a vertex without its neighbours
+void check_fractions(const internal::Patch& patch,
+                     const Fake_mover& mover,
+                     const internal::Vertex_step_sizes& field,
+                     const Tries& tries,
+                     const std::vector<double>* may_be = nullptr)
 {
-  const std::vector<double>& part = field.parts();
-  std::vector<char> is_held(part.size(), 0);
+  const std::vector<double>& fraction = field.fractions();
+  std::vector<char> is_limited(fraction.size(), 0);
   const Indexed_mesh& mesh = patch.polygons;
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     for(const bool forwards : {true, false})
@@ -233,46 +233,46 @@ void check_parts(const internal::Patch& patch,
       const int b = forwards ? mesh.target(c) : mesh.source(c);
       if(!patch.is_free[a] || !patch.is_free[b])
         continue;
-      const double most = part[b] + largest_difference(patch, mover, a, b);
-      RCO_CHECK_LESS_EQUAL(part[a], most + 1e-14);
-      is_held[a] = is_held[a] || part[a] > most - 1e-14;
+      const double most = fraction[b] + largest_difference(patch, mover, a, b);
+      RCO_CHECK_LESS_EQUAL(fraction[a], most + 1e-14);
+      is_limited[a] = is_limited[a] || fraction[a] > most - 1e-14;
     }
-  for(std::size_t v = 0; v < part.size(); ++v)
+  for(std::size_t v = 0; v < fraction.size(); ++v)
   {
     if(!patch.is_free[v])
     {
       RCO_CHECK_EQUAL(tries.number[v], 0);
       continue;
     }
-    // the last thing that was tried is what is, and it succeeded
-    RCO_CHECK_EQUAL(tries.last[v], part[v]);
-    RCO_CHECK_LESS_EQUAL(part[v], tries.most[v]);
-    // nothing is lower than it need be
+    // the last trial is the result, and it succeeded
+    RCO_CHECK_EQUAL(tries.last[v], fraction[v]);
+    RCO_CHECK_LESS_EQUAL(fraction[v], tries.most[v]);
+    // no fraction is lower than necessary
     if(may_be)
-      RCO_CHECK(part[v] == (*may_be)[v] || (is_held[v] && part[v] < (*may_be)[v]));
+      RCO_CHECK(fraction[v] == (*may_be)[v] || (is_limited[v] && fraction[v] < (*may_be)[v]));
   }
 }
 
-void test_step_field()
+void test_vertex_step_sizes()
 {
-  const Scope scope("step field");
+  const Scope scope("vertex step sizes");
   const Shape shape = scrambled(plane_grid(24, 20), 0.3, 2, onto_plane);
   const int n = int(shape.points.size());
   Random random(3);
   for(int trial = 0; trial < 30; ++trial)
   {
     const internal::Patch patch = patch_of(shape, trial % 2 == 1);
-    // from no way at all to several edges
+    // from zero to several edges
     Fake_mover mover;
     const double longest = std::pow(10., random(-3, 0.)) * 0.5;
     for(int v = 0; v < n; ++v)
       mover.length.push_back(random() < 0.1 ? 0 : longest * random());
-    internal::Step_field field;
+    internal::Vertex_step_sizes field;
     field.start(patch);
-    RCO_CHECK(field.parts() == std::vector<double>(n, 1));
+    RCO_CHECK(field.fractions() == std::vector<double>(n, 1));
     Tries tries(n);
-    field.settle(patch, mover, tries.function());
-    RCO_CHECK(field.parts() == std::vector<double>(n, 1));
+    field.apply(patch, mover, tries.function());
+    RCO_CHECK(field.fractions() == std::vector<double>(n, 1));
     for(int v = 0; v < n; ++v)
       RCO_CHECK_EQUAL(tries.number[v], int(patch.is_free[v]));
 
@@ -282,42 +282,42 @@ void test_step_field()
     {
       const int v = random.index(n);
       const double factor = random(0.01, 0.9);
-      field.cut(patch, v, factor);
+      field.reduce(patch, v, factor);
       if(patch.is_free[v])
         may_be[v] *= factor;
     }
     const std::vector<int> number = tries.number;
-    field.settle(patch, mover, tries.function());
-    check_parts(patch, mover, field, tries, &may_be);
-    for(int v = 0; v < n; ++v) // what is as it was is not tried again
-      RCO_CHECK_EQUAL(tries.number[v] > number[v], patch.is_free[v] && field.parts()[v] < 1);
+    field.apply(patch, mover, tries.function());
+    check_fractions(patch, mover, field, tries, &may_be);
+    for(int v = 0; v < n; ++v) // unchanged fractions are not tried again
+      RCO_CHECK_EQUAL(tries.number[v] > number[v], patch.is_free[v] && field.fractions()[v] < 1);
 
-    // failures, some of them at any part above 0
-    const std::vector<double> before = field.parts();
+    // failures, some of them at any fraction above 0
+    const std::vector<double> before = field.fractions();
     for(int v = 0; v < n; ++v)
       if(random() < 0.02)
         tries.most[v] = random() < 0.3 ? 0 : random();
     for(int v = 0; v < n; ++v)
-      field.cut(patch, v, 0.999);
-    field.settle(patch, mover, tries.function());
-    check_parts(patch, mover, field, tries);
+      field.reduce(patch, v, 0.999);
+    field.apply(patch, mover, tries.function());
+    check_fractions(patch, mover, field, tries);
     for(int v = 0; v < n; ++v)
       if(patch.is_free[v])
-        RCO_CHECK(field.parts()[v] < before[v] || before[v] == 0);
+        RCO_CHECK(field.fractions()[v] < before[v] || before[v] == 0);
 
     // all at once, down to nothing
-    const std::vector<double> failed = field.parts();
-    field.cut_all(patch, 0.5);
-    field.settle(patch, mover, tries.function());
-    check_parts(patch, mover, field, tries);
+    const std::vector<double> failed = field.fractions();
+    field.reduce_all(patch, 0.5);
+    field.apply(patch, mover, tries.function());
+    check_fractions(patch, mover, field, tries);
     for(int v = 0; v < n; ++v)
-      RCO_CHECK_LESS_EQUAL(field.parts()[v], patch.is_free[v] ? 0.5 * failed[v] : 1);
+      RCO_CHECK_LESS_EQUAL(field.fractions()[v], patch.is_free[v] ? 0.5 * failed[v] : 1);
     for(int i = 0; i < 10; ++i)
-      field.cut_all(patch, 0.5);
-    field.settle(patch, mover, tries.function());
+      field.reduce_all(patch, 0.5);
+    field.apply(patch, mover, tries.function());
     for(int v = 0; v < n; ++v)
-      RCO_CHECK_EQUAL(field.parts()[v], patch.is_free[v] ? 0. : 1.);
-    check_parts(patch, mover, field, tries);
+      RCO_CHECK_EQUAL(field.fractions()[v], patch.is_free[v] ? 0. : 1.);
+    check_fractions(patch, mover, field, tries);
   }
 }
 
@@ -332,9 +332,9 @@ double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], cons
     for(int k = 0; k <= steps; ++k)
     {
       const double t = double(k) / steps;
-      const Vector_3 way = (1 - t) * corners[i] + t * corners[(i + 1) % 3] - from;
-      if(way.norm() > 1e-12)
-        most = (std::max)(most, way.normalized().dot(along));
+      const Vector_3 displacement = (1 - t) * corners[i] + t * corners[(i + 1) % 3] - from;
+      if(displacement.norm() > 1e-12)
+        most = (std::max)(most, displacement.normalized().dot(along));
     }
   return most;
 }
@@ -348,7 +348,7 @@ void test_progress()
     const Vector_3 a = random.in_cube(1), b = random.in_cube(1), d = random.in_cube(1);
     if(a.cross(b).norm() < 0.05 * a.norm() * b.norm())
       continue;
-    const double progress = internal::progress_in_wedge(a, b, d);
+    const double progress = internal::projected_length_in_wedge(a, b, d);
     double most = 0;
     const Vector_3 u = a.normalized(), w = (b - b.dot(u) * u).normalized();
     const double angle = std::atan2(b.dot(w), b.dot(u));
@@ -357,15 +357,15 @@ void test_progress()
         (std::max)(most, (std::cos(angle * k / 1000) * u + std::sin(angle * k / 1000) * w).dot(d));
     RCO_CHECK_NEAR(progress, most, 1e-5 * d.norm());
     RCO_CHECK_LESS_EQUAL(most, progress + 1e-12);
-    RCO_CHECK_NEAR(internal::progress_in_wedge(3 * b, 0.1 * a, d), progress, 1e-12);
+    RCO_CHECK_NEAR(internal::projected_length_in_wedge(3 * b, 0.1 * a, d), progress, 1e-12);
   }
   // without an inside
   const Vector_3 x = Vector_3::UnitX();
-  RCO_CHECK_EQUAL(internal::progress_in_wedge(x, 2 * x, x), 0.);
-  RCO_CHECK_EQUAL(internal::progress_in_wedge(x, Vector_3::Zero(), x), 0.);
+  RCO_CHECK_EQUAL(internal::projected_length_in_wedge(x, 2 * x, x), 0.);
+  RCO_CHECK_EQUAL(internal::projected_length_in_wedge(x, Vector_3::Zero(), x), 0.);
 }
 
-void test_face_towards(const std::string& name, const Shape& shape)
+void test_face_in_direction(const std::string& name, const Shape& shape)
 {
   const Scope scope("face towards, " + name);
   const internal::Reference_surface reference(copy_of(shape));
@@ -373,7 +373,7 @@ void test_face_towards(const std::string& name, const Shape& shape)
   Random random(5);
   const auto check_from = [&](const internal::Surface_point& from, const std::set<int>& around) {
     const Vector_3 d = random.in_cube(1);
-    const int face = internal::face_towards(reference, from, d);
+    const int face = internal::face_in_direction(reference, from, d);
     RCO_CHECK(around.count(face) > 0);
     double most = 0, own = 0;
     for(const int f : around)
@@ -393,7 +393,7 @@ void test_face_towards(const std::string& name, const Shape& shape)
   {
     const int f = mesh.corner_face[c], i = c - mesh.face_begin[f], v = mesh.source(c);
     Vector_3 inside = random.barycentric();
-    RCO_CHECK_EQUAL(internal::face_towards(reference, reference.point(f, inside), inside), f);
+    RCO_CHECK_EQUAL(internal::face_in_direction(reference, reference.point(f, inside), inside), f);
 
     Vector_3 on_edge = Vector_3::Zero();
     on_edge[i] = random(0.2, 0.8);
@@ -467,7 +467,7 @@ void test_barrier(const std::string& name, const Density& density, double steepn
   const auto densities = internal::make_element_densities(std::make_tuple(density));
   typedef internal::Angle_barrier_density<std::decay_t<decltype(densities)>> Barrier;
   internal::Element_set::Element element;
-  element.is_judged = true;
+  element.has_criterion = true;
   Eigen::Matrix2d equilateral;
   equilateral << 1, 0.5, 0, std::sqrt(0.75);
   Random random(7);
@@ -493,9 +493,9 @@ void test_barrier(const std::string& name, const Density& density, double steepn
       internal::projected_derivatives(density, J, plain_gradient, plain_hessian, 0);
     RCO_CHECK_NEAR(barrier.value(element, J), value, 1e-12 * value);
     RCO_CHECK_LESS_EQUAL(plain_value, value);
-    element.is_judged = false;
+    element.has_criterion = false;
     RCO_CHECK_EQUAL(barrier.value(element, J), density.value(J));
-    element.is_judged = true;
+    element.has_criterion = true;
     if(angle > target + 20 / steepness + 0.01)
     {
       RCO_CHECK_EQUAL(value, plain_value);
@@ -542,7 +542,7 @@ void test_barrier(const std::string& name, const Density& density, double steepn
   RCO_CHECK_LESS(100, capped);
   RCO_CHECK_LESS(100, plain_again);
 
-  // turned over, or without extent
+  // inverted, or without extent
   const Barrier barrier(densities, 30, steepness);
   for(const double s : {-1., -1e-9, 0., 1e-9, 1e9})
     for(const double t : {0., 1e-40, 1.})
@@ -608,7 +608,7 @@ void test_finishing(const std::string& name, const Shape& start, const Shape& re
 #endif
 }
 
-// -------------------------------------------------------------------------------- starting again
+// -------------------------------------------------------------------------------- restarting
 
 // the largest patch and the energy of each iteration
 struct Largest_patches : RCO::Default_visitor
@@ -633,11 +633,11 @@ struct Largest_patches : RCO::Default_visitor
   }
 };
 
-// Where iterations have come to rest, all of a mesh that began in several patches is visited in a single
-// one; but not if the caller bounds their size.
-void test_starting_again()
+// After convergence, all of a mesh that was divided into several patches is visited in a single one; but
+// not if the caller bounds their size.
+void test_restarts()
 {
-  const Scope scope("starting again");
+  const Scope scope("restarting");
   const Shape ring = torus(80, 40), start = scrambled(ring, 0.3, 13, onto_torus(1, 0.4));
   const Mesh reference = make_mesh<Mesh>(ring);
   for(const unsigned int maximum : {0u, 2000u, 2000000000u})
@@ -662,9 +662,9 @@ void test_starting_again()
 
 // ------------------------------------------------------------------------------------- clusters
 
-// A saddle with a border where vertices all but coincide with their neighbours, inside and at the border,
-// as marching cubes leave them. What fixed vertices of the border hold stays sharp: the faces at these
-// short edges, and no others.
+// A saddle with a border where vertices nearly coincide with their neighbours, inside and at the border, as
+// marching cubes produce them. Faces at fixed vertices of the border stay sharp: the faces at these short
+// edges, and no others.
 void test_clusters(double size)
 {
   const Scope scope("clusters of " + std::to_string(-std::log10(size)) + " digits");
@@ -718,15 +718,16 @@ void test_clusters(double size)
 int main()
 {
   test_partition();
-  test_step_field();
+  test_vertex_step_sizes();
   test_progress();
   Shape bumps = plane_grid(9, 7);
   Random random(8);
   for(Vector_3& p : bumps.points)
     p += random.in_cube(0.03) + random(-0.1, 0.1) * Vector_3::UnitZ();
-  test_face_towards("bumps with a border", bumps);
-  test_face_towards("torus", scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));
-  test_face_towards("tetrahedron", tetrahedron());
+  test_face_in_direction("bumps with a border", bumps);
+  test_face_in_direction("torus",
+                         scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));
+  test_face_in_direction("tetrahedron", tetrahedron());
   test_point_index();
   for(const double steepness : {6, 12, 30})
   {
@@ -734,7 +735,7 @@ int main()
     test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density(), steepness);
   }
 
-  test_starting_again();
+  test_restarts();
   for(const double size : {1e-4, 1e-11, 1e-13})
     test_clusters(size);
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);

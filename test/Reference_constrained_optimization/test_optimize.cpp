@@ -36,7 +36,7 @@ struct Stopped : std::runtime_error
   Stopped() : std::runtime_error("the visitor stops") {}
 };
 
-// what rounding of sums may show in the energies that a visitor is told of
+// the tolerance for the rounding of sums in the energies that a visitor receives
 const double on_the_way = 1e-8;
 
 // Tests every patch and adds up what it is told; stops when told to.
@@ -210,7 +210,7 @@ struct Measures
 {
   double energy = 0; // mean
   std::size_t flips = 0, folds = 0;
-  bool is_plain = true; // no element is turned round or near its cap
+  bool is_plain = true; // no element is inverted or near its cap
   double smallest_angle = 180, mean_angle = 0;
 };
 
@@ -989,7 +989,7 @@ double watched_drift(const Mesh& mesh, const Mesh& reference)
   return std::sqrt(largest);
 }
 
-// a model with sharp edges: what the bound promises, and that it is what does it
+// a model with sharp edges: the drift bound holds, and it is not satisfied without it
 void test_drift(const std::string& name)
 {
   const Scope scope("drift of " + name);

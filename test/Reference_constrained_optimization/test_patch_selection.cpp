@@ -221,7 +221,7 @@ bool is_disk(const Indexed_mesh& mesh, const std::vector<int>& faces)
   return length == border.size();
 }
 
-// keeps_disk() against the definition, for every face beside random disks
+// preserves_disk() against the definition, for every face beside random disks
 void test_disk_guard(const Shape& shape, const std::string& name)
 {
   const Scope scope("disk guard on " + name);
@@ -255,7 +255,7 @@ void test_disk_guard(const Shape& shape, const std::string& name)
         std::vector<int> larger(patch);
         larger.push_back(f);
         const bool expected = is_disk(mesh, larger);
-        const bool keeps = internal::keeps_disk(
+        const bool keeps = internal::preserves_disk(
           mesh, f, [&](int g) { return in_patch[g] != 0; },
           [&](int v) { return has_vertex[v] != 0; });
         RCO_CHECK_EQUAL(keeps, expected);
@@ -426,7 +426,7 @@ void test_rounds()
   internal::Selection_parameters parameters;
   parameters.maximum_patch_size = 20;
   internal::Patch_selection selection(mesh, parameters);
-  selection.forget_visits();
+  selection.clear_visits();
   for(const int halo : {0, (std::numeric_limits<int>::max)()})
   {
     internal::Patch_rounds rounds(mesh, halo);

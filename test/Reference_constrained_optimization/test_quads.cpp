@@ -476,7 +476,7 @@ void test_tube_recovery()
     options.tolerance = 1e-6;
     options.iterations = 60;
     const auto regular_again = [&](const Outcome& out, double optimum) {
-      // flattened patches see the drift barrier only where it is felt already, and may end before it
+      // flattened patches consider the drift barrier only where it is active, and may end before it
       if(on_surface)
       {
         RCO_CHECK_LESS(out.corners.standard_deviation, 0.5);
@@ -805,7 +805,7 @@ void test_near_degenerate()
       const Outcome out = optimized(shape.second, fine, energy, options);
       RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
       RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
-      // flattened patches alone may stick with angles alone, and where they do hangs on rounding
+      // flattened patches alone may stick with angles alone, and where they do depends on rounding
       if(!options.on_surface && std::is_same<Energy, RCO::Quad_angle_energy>::value)
         return;
       RCO_CHECK_LESS(0.3, out.edges.minimum);

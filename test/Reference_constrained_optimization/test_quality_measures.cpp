@@ -114,8 +114,8 @@ void test_drift()
   RCO_CHECK_EQUAL(tolerance(with), tolerance(spike));
 }
 
-// Points of a face are on it where a needle crosses it, of which only the sides are known to all digits
-// (found by fuzzing).
+// Points of a face are on it where a needle crosses it, of which only the sides are accurate (found
+// by fuzzing).
 void test_distance_beside_needle()
 {
   const Scope scope("distance beside a needle");
@@ -150,7 +150,7 @@ void test_orientation()
   const RCO::Orientation_defects bad = RCO::orientation_defects(make_mesh<Mesh>(turned), reference);
   RCO_CHECK_LESS(0u, bad.number_of_flips);
   RCO_CHECK_LESS(0u, bad.number_of_fold_edges);
-  // a reference oriented the other way is turned round
+  // a reference of opposite orientation is reversed
   Shape back = flat;
   for(auto& f : back.faces)
     std::reverse(f.begin(), f.end());
@@ -163,9 +163,9 @@ void test_orientation()
   RCO_CHECK_EQUAL(RCO::orientation_defects(make_mesh<Mesh>(far), reference).number_of_flips,
                   bad.number_of_flips);
 
-  // Where a surface passes through itself, the normals of the other part say nothing: here two
-  // planes that are nearly turned against each other, and a mesh with vertices on the line where they
-  // meet that the reference does not have.
+  // Where a surface passes through itself, the normals of the other part say nothing: here two planes of
+  // nearly opposite orientation, and a mesh with vertices on the line where they meet that the reference
+  // does not have.
   const auto crossing = [](int n) {
     Shape tilted = turned_round(plane_grid(n, n));
     for(Vector_3& p : tilted.points)
@@ -178,8 +178,8 @@ void test_orientation()
       0u);
 }
 
-// Where sheets that are turned against each other meet, a vertex is on the one that faces as its faces do,
-// though the other may be more nearly parallel: waves that cross a plane, and a mesh of their chords.
+// Where sheets of opposite orientation meet, a vertex is on the one that agrees with its faces, though the
+// other may be more nearly parallel: waves that cross a plane, and a mesh of their chords.
 void test_sheets_turned_against_each_other()
 {
   const Scope scope("sheets turned against each other");
@@ -330,7 +330,7 @@ void test_large_fans()
     RCO_CHECK_NEAR(RCO::feature_deviation(mesh, moved).kept, 1, 1e-9);
     return double(std::clock() - start) / CLOCKS_PER_SEC;
   };
-  // the least of three: other processes may be in the way
+  // the least of three: other processes may slow it down
   const double small = (std::min)({time(1000), time(1000), time(1000)}),
                large = (std::min)({time(5000), time(5000), time(5000)});
   RCO_CHECK_LESS(large, 18 * small);

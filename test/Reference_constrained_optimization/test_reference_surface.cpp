@@ -174,19 +174,20 @@ void test_folded_quads()
 
 // Faces without area, or with so little that it underflows, hold points that no other face has: here
 // lines of several faces, one of them on top of another, beside a body.
-void test_hairs()
+void test_degenerate_edges()
 {
   for(const double width : {0., 1e-317, 1e-160, 1e-16})
   {
-    Shape hairs;
+    Shape degenerate_edges;
     for(const double x : {0., 1., 3., 0.5, 2., 1.})
-      hairs.add(x, 2 * x, 0);
-    hairs.points[1].z() = hairs.points[3].z() = width;
-    hairs.triangle(0, 1, 3);
-    hairs.triangle(1, 2, 4);
-    hairs.triangle(2, 1, 5);
-    test_closest(joined(tetrahedron(), hairs, Vector_3(0.5, 0, 0)), "hairs");
-    test_closest(joined(hairs, icosphere(1), Vector_3(0.5, 0, 0)), "hairs through a sphere");
+      degenerate_edges.add(x, 2 * x, 0);
+    degenerate_edges.points[1].z() = degenerate_edges.points[3].z() = width;
+    degenerate_edges.triangle(0, 1, 3);
+    degenerate_edges.triangle(1, 2, 4);
+    degenerate_edges.triangle(2, 1, 5);
+    test_closest(joined(tetrahedron(), degenerate_edges, Vector_3(0.5, 0, 0)), "degenerate edges");
+    test_closest(joined(degenerate_edges, icosphere(1), Vector_3(0.5, 0, 0)),
+                 "degenerate edges through a sphere");
   }
 }
 
@@ -207,27 +208,27 @@ void test_descend_on_convex_surfaces()
       const Vector_3 normal =
         internal::face_vector_area(surface.mesh(), surface.points(), f).normalized();
       const Vector_3 p = from.position + random(0.2, 0.5) * normal + random.in_cube(0.2);
-      const internal::Surface_point s = surface.descend(p, f);
+      const internal::Surface_point s = surface.local_closest(p, f);
       check_surface_point(surface, s);
       RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-10);
     }
-    // it ends no further away than it started, wherever that is
+    // the result is no further away than the start, wherever that is
     for(int i = 0; i < 500; ++i)
     {
       const Vector_3 p = random.in_cube(1.5);
       const int f = random.index(n);
-      RCO_CHECK_LESS_EQUAL((surface.descend(p, f).position - p).norm(),
+      RCO_CHECK_LESS_EQUAL((surface.local_closest(p, f).position - p).norm(),
                            (surface.closest_in_face(p, f).position - p).norm() + 1e-15);
     }
   }
-  // all the way round a sphere
+  // all around a sphere
   const Shape sphere = icosphere(3);
   const internal::Reference_surface surface = surface_of(sphere);
   for(int i = 0; i < 500; ++i)
   {
     const Vector_3 p = random(1.01, 2) * random.in_cube(1).normalized();
     const internal::Surface_point s =
-      surface.descend(p, random.index(surface.mesh().number_of_faces()));
+      surface.local_closest(p, random.index(surface.mesh().number_of_faces()));
     RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-10);
   }
 }
@@ -266,14 +267,14 @@ void test_descend_on_double_sheet()
         continue;
       const Vector_3 p = from.position + Vector_3(random(-0.03, 0.03), random(-0.03, 0.03),
                                                   random(-20 * gap, 5 * gap));
-      const internal::Surface_point s = surface.descend(p, f);
+      const internal::Surface_point s = surface.local_closest(p, f);
       RCO_CHECK(is_upper(sheet, s.face));
       RCO_CHECK_LESS(0., surface.normal(s).z());
       wrong_by_tree += !is_upper(sheet, surface.closest(p).face);
       // and from below
       const int g = 2 * n * n + f;
       RCO_CHECK(!is_upper(sheet, g));
-      const internal::Surface_point t = surface.descend(p, g);
+      const internal::Surface_point t = surface.local_closest(p, g);
       RCO_CHECK(!is_upper(sheet, t.face));
       RCO_CHECK_LESS(surface.normal(t).z(), 0.);
     }
@@ -283,15 +284,15 @@ void test_descend_on_double_sheet()
 
 // ------------------------------------------------------------------------------------------
 
-struct Placed_mesh
+struct Mesh_on_surface
 {
   Indexed_mesh mesh;
   internal::Element_set elements;
   internal::Optimization_state state;
 
-  Placed_mesh(const Shape& shape,
-              const internal::Reference_surface& surface,
-              const std::function<bool(int)>& face_is_allowed)
+  Mesh_on_surface(const Shape& shape,
+                  const internal::Reference_surface& surface,
+                  const std::function<bool(int)>& face_is_allowed)
     : mesh(indexed(shape)),
       elements(
         RCO::Minimum_angle_energy(),
@@ -300,7 +301,7 @@ struct Placed_mesh
   {
     for(std::size_t v = 0; v < shape.points.size(); ++v)
     {
-      internal::Placed_vertex placed;
+      internal::Located_vertex placed;
       double best = std::numeric_limits<double>::infinity();
       for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
       {
@@ -319,7 +320,7 @@ struct Placed_mesh
   }
 };
 
-internal::Patch whole_patch(const Placed_mesh& placed)
+internal::Patch whole_patch(const Mesh_on_surface& placed)
 {
   std::vector<int> faces;
   for(int f = 0; f < placed.mesh.number_of_faces(); ++f)
@@ -338,7 +339,7 @@ void test_map_to_upper_sheet(const Shape& sheets,
   Shape coarse = plane_grid(coarseness, coarseness, 0.8);
   for(Vector_3& p : coarse.points)
     p += Vector_3(0.1, 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
-  const Placed_mesh placed(coarse, surface, is_on_upper);
+  const Mesh_on_surface placed(coarse, surface, is_on_upper);
   const internal::Patch patch = whole_patch(placed);
   Random random(5);
   int mapped = 0, tried = 0, wrong_by_tree = 0;
@@ -354,10 +355,10 @@ void test_map_to_upper_sheet(const Shape& sheets,
     Vector_3 point = Vector_3::Zero();
     for(int k = 0; k < 3; ++k)
       point += location.barycentric(k) *
-               patch.placed[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
+               patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
     ++tried;
     wrong_by_tree += !is_on_upper(surface.closest(point).face);
-    internal::Placed_vertex result;
+    internal::Located_vertex result;
     if(!internal::map_to_reference(patch, location, surface, result))
       continue;
     ++mapped;
@@ -385,7 +386,7 @@ void test_map_to_reference_on_sheets()
         sheet, [&](int f) { return is_upper(sheet, f); }, coarseness,
         coarseness == 5 || gap < 1e-3 ? 500 : -1);
     }
-  // two shelves that look the same way: only the way along R tells them apart
+  // two shelves of the same normal, which only the path along R distinguishes
   const Scope scope("map_to_reference on two shelves");
   Shape shelf = plane_grid(48, 48);
   for(Vector_3& p : shelf.points)
@@ -412,7 +413,7 @@ void test_map_to_reference_on_plane()
     const Shape& shape = is_damaged ? damaged : fine;
     int exact = 0;
     const internal::Reference_surface surface = surface_of(shape);
-    const Placed_mesh placed(plane_grid(5, 5), surface, [](int) { return true; });
+    const Mesh_on_surface placed(plane_grid(5, 5), surface, [](int) { return true; });
     const internal::Patch patch = whole_patch(placed);
     for(int i = 0; i < 2000; ++i)
     {
@@ -422,8 +423,8 @@ void test_map_to_reference_on_plane()
       Vector_3 point = Vector_3::Zero();
       for(int k = 0; k < 3; ++k)
         point += location.barycentric(k) *
-                 patch.placed[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
-      internal::Placed_vertex result;
+                 patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
+      internal::Located_vertex result;
       if(RCO_CHECK(internal::map_to_reference(patch, location, surface, result)))
       {
         const double off = (result.position - point).norm();
@@ -601,7 +602,7 @@ int main()
   test_closest(joined(torus(16, 8), tetrahedron(), Vector_3(1, 0, 0)), "two components");
   test_closest(plane_grid(6, 5, 1, true), "quads");
   test_folded_quads();
-  test_hairs();
+  test_degenerate_edges();
   test_descend_on_convex_surfaces();
   test_descend_on_double_sheet();
   test_map_to_reference_on_sheets();

@@ -16,8 +16,8 @@
 namespace RCO = CGAL::Reference_constrained_optimization;
 namespace params = CGAL::parameters;
 using namespace rco_test;
-using RCO::internal::Line_point;
-using RCO::internal::Slide_lines;
+using RCO::internal::Polyline_point;
+using RCO::internal::Polyline_set;
 
 typedef CGAL::Simple_cartesian<double> Kernel;
 typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
@@ -25,11 +25,11 @@ typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 void test_lines()
 {
   Scope scope("lines");
-  Slide_lines lines;
+  Polyline_set lines;
   const Vector_3 a(0, 0, 0), b(1, 0, 0), c(1, 2, 0);
   const int first = lines.add(a, b, -1), second = lines.add(b, c, -1), third = lines.add(c, a, -1);
   lines.connect(first, second);
-  Line_point p{first, 0.25};
+  Polyline_point p{first, 0.25};
   RCO_CHECK(lines.advance(p, 1.25));
   RCO_CHECK_EQUAL(p.segment, second);
   RCO_CHECK_NEAR((lines.position(p) - Vector_3(1, 0.5, 0)).norm(), 0, 1e-15);

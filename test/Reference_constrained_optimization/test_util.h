@@ -2,7 +2,7 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What all tests share: checks that do not hang on NDEBUG, random numbers that are the same
+// What all tests share: checks that do not depend on NDEBUG, random numbers that are the same
 // everywhere, and meshes made by formulas.
 
 #ifndef RCO_TEST_UTIL_H

@@ -73,7 +73,7 @@ struct Scene
   {
     RCO::Result result;
     state.is_free.assign(copy.points.size(), 1);
-    place_on_reference(copy.points, surface, state, result);
+    locate_on_reference(copy.points, surface, state, result);
     geometry.update(copy.mesh, copy.points);
   }
 
@@ -125,22 +125,22 @@ void growing(benchmark::State& state, bool grows_by_cost)
 std::vector<Vector_3> points_of(const Patch& patch)
 {
   std::vector<Vector_3> points;
-  for(const Placed_vertex& p : patch.placed)
+  for(const Located_vertex& p : patch.located)
     points.push_back(p.position);
   return points;
 }
 
-enum class Way { conformal, conformal_of_cgal, mean_value, tutte };
+enum class Method { conformal, conformal_of_cgal, mean_value, tutte };
 
-// what a map to a convex border distorts is mended by descent
-void flattening(benchmark::State& state, Way way)
+// what a map to a convex border distorts is repaired by descent
+void flattening(benchmark::State& state, Method method)
 {
   const Patch patch = scene().patch(int(state.range(0)));
   const std::vector<Vector_3> points = points_of(patch);
   Flattening_parameters parameters;
-  parameters.use_conformal = way == Way::conformal || way == Way::conformal_of_cgal;
-  parameters.use_conformal_of_cgal = way == Way::conformal_of_cgal;
-  parameters.use_mean_value = way != Way::tutte;
+  parameters.use_conformal = method == Method::conformal || method == Method::conformal_of_cgal;
+  parameters.use_conformal_of_cgal = method == Method::conformal_of_cgal;
+  parameters.use_mean_value = method != Method::tutte;
   Patch_flattener flattener;
   for(auto _ : state)
     state.counters["distortion"] =
@@ -155,7 +155,7 @@ void flattening_as_rigid_as_possible(benchmark::State& state)
   namespace SMP = CGAL::Surface_mesh_parameterization;
   const Patch patch = scene().patch(int(state.range(0)));
   Mesh mesh;
-  for(const Placed_vertex& p : patch.placed)
+  for(const Located_vertex& p : patch.located)
     mesh.add_vertex(Kernel::Point_3(p.position.x(), p.position.y(), p.position.z()));
   for(int f = 0; f < patch.triangles().number_of_faces(); ++f)
   {
@@ -335,7 +335,7 @@ void closest_point(benchmark::State& state, bool is_local)
     const Vector_3 p = 0.5 * (s.surface.corner_point(f, 0) + s.surface.corner_point(f, 1)) +
                        0.003 * s.geometry.normals[f];
     const int start = s.copy.mesh.corner_face[s.copy.mesh.opposite[3 * f + 1]];
-    benchmark::DoNotOptimize(is_local ? s.surface.descend(p, start) : s.surface.closest(p));
+    benchmark::DoNotOptimize(is_local ? s.surface.local_closest(p, start) : s.surface.closest(p));
     f = (f + 977) % s.copy.mesh.number_of_faces();
   }
 }
@@ -348,10 +348,10 @@ void patch_sizes(benchmark::internal::Benchmark* benchmark)
 BENCHMARK(cone_proxy)->Arg(1000);
 BENCHMARK_CAPTURE(growing, by_distance, false)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(growing, by_cost, true)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, conformal, Way::conformal)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, conformal_of_cgal, Way::conformal_of_cgal)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, mean_value, Way::mean_value)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, tutte, Way::tutte)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, conformal, Method::conformal)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, conformal_of_cgal, Method::conformal_of_cgal)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, mean_value, Method::mean_value)->Apply(patch_sizes);
+BENCHMARK_CAPTURE(flattening, tutte, Method::tutte)->Apply(patch_sizes);
 BENCHMARK(flattening_as_rigid_as_possible)->Apply(patch_sizes);
 BENCHMARK(newton_step_in_plane)->Apply(patch_sizes);
 BENCHMARK(newton_step_on_surface)->Apply(patch_sizes);

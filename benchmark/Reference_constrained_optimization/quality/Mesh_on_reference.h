@@ -38,10 +38,10 @@ public:
   const Vector& point(int v) const { return m_vertices[v].position; }
   const Surface_point& location(int v) const { return m_vertices[v]; }
 
-  // where a vertex comes to lie if it is moved to p; stays on the sheet that it is on
-  Surface_point foot(int v, const Vector& p) const
+  // the point of the reference for a vertex that is moved to p, on the same sheet
+  Surface_point projection(int v, const Vector& p) const
   {
-    return m_reference.descend(p, m_vertices[v].face);
+    return m_reference.local_closest(p, m_vertices[v].face);
   }
   void place(int v, const Surface_point& s) { m_vertices[v] = s; }
 
@@ -50,7 +50,7 @@ public:
   {
     for(int v = 0; v < m_mesh.number_of_vertices(); ++v)
       if(is_free(v))
-        place(v, foot(v, point_of(mesh, v)));
+        place(v, projection(v, point_of(mesh, v)));
   }
   // the same for vertices that may have gone far
   void take_globally(const Mesh& mesh)

@@ -52,7 +52,7 @@ public:
                  1e-2, settings.iterations_per_round, settings.tolerance);
       for(int v = 0; v < n; ++v)
         if(m_mesh.is_free(v))
-          m_mesh.place(v, m_mesh.foot(v, m_unit * x.segment<3>(3 * v)));
+          m_mesh.place(v, m_mesh.projection(v, m_unit * x.segment<3>(3 * v)));
     }
     return iterations;
   }
@@ -74,7 +74,7 @@ private:
   }
 
   // The normals that areas are signed by: in space, the shape of a triangle does not tell which side
-  // is up. Those of the reference, except for faces that are turned against it already.
+  // is up. Those of the reference, except for faces that are inverted already.
   void renew_normals(const Eigen::VectorXd& x)
   {
     const auto& mesh = m_mesh.mesh();
@@ -99,7 +99,7 @@ private:
     return x.segment<3>(3 * corner_vertex(f, i));
   }
 
-  // infinite if a face turns over
+  // infinite if a face is inverted
   double energy(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const
   {
     gradient.setZero();
@@ -116,7 +116,7 @@ private:
       const double shape =
         ((p[1] - p[0]).squaredNorm() + (p[2] - p[1]).squaredNorm() + (p[0] - p[2]).squaredNorm()) /
         area;
-      // a few slivers would own the energy: continued linearly beyond the cap
+      // a few slivers would dominate the energy: continued linearly beyond the cap
       const double cap = 20, e = std::exp((std::min)(shape, cap));
       sum += shape < cap ? e : e * (1 + shape - cap);
       for(int i = 0; i < 3; ++i)

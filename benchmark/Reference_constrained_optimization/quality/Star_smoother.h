@@ -48,10 +48,10 @@ private:
     double length = 1;
     for(int i = 0; i <= most_halvings; ++i, length *= 0.5)
     {
-      const Mesh_on_reference::Surface_point foot = m_mesh.foot(v, at + length * step);
-      if(!turns_a_face(foot.position) && energy(foot.position) < before)
+      const Mesh_on_reference::Surface_point projection = m_mesh.projection(v, at + length * step);
+      if(!turns_a_face(projection.position) && energy(projection.position) < before)
       {
-        m_mesh.place(v, foot);
+        m_mesh.place(v, projection);
         return;
       }
     }

@@ -95,9 +95,9 @@ public:
     std::vector<int> face(n);
     for(int v = 0; v < n; ++v)
     {
-      const auto foot = m_reference.closest(points[v]);
-      face[v] = foot.face;
-      points[v] = foot.position;
+      const auto projection = m_reference.closest(points[v]);
+      face[v] = projection.face;
+      points[v] = projection.position;
     }
     Rows positions(n, 3);
     Eigen::VectorXd right(3 * n);
@@ -126,9 +126,9 @@ public:
       const Eigen::VectorXd solution = m_solver.solve(right);
       for(int v = 0; v < n; ++v)
       {
-        const auto foot = m_reference.descend(solution.segment<3>(3 * v), face[v]);
-        face[v] = foot.face;
-        points[v] = foot.position;
+        const auto projection = m_reference.local_closest(solution.segment<3>(3 * v), face[v]);
+        face[v] = projection.face;
+        points[v] = projection.position;
       }
     }
   }

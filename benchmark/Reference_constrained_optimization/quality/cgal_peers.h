@@ -22,8 +22,8 @@
 #include <string>
 #include <utility>
 
-// what the number of iterations is chosen by: the minimum angle, and the mean where a face that
-// cannot move owns the minimum
+// what the number of iterations is chosen by: the minimum angle, and the mean where a face that cannot move
+// determines the minimum
 inline std::pair<double, double> angle_quality(const Mesh& mesh)
 {
   const auto angles = CGAL::Reference_constrained_optimization::angle_statistics(mesh);
@@ -85,7 +85,7 @@ inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints
   return best;
 }
 
-// tells CGAL's relaxation not to lower the smallest angle of a star, nor to turn a face of it
+// keeps CGAL's relaxation from lowering the smallest angle of a star, and from inverting a face of it
 class Star_guard
 {
 public:

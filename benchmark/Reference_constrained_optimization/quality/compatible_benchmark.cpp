@@ -2,9 +2,9 @@
 
 #include "../Monotonicity_visitor.h"
 #include "../driver.h"
+#include "../guarantees.h"
 #include "../library_call.h"
 #include "../meshes.h"
-#include "../promises.h"
 #include "../result_columns.h"
 #include "../settings.h"
 #include "arap_baseline.h"
@@ -42,11 +42,11 @@ a line, from which a start is made) or both.
   common_usage +
   R"(
 distortion: of the triangles, half the sum of the squared norms of the Jacobian and of its inverse, Q
-scaled to R's area (2 is isometric). flips, folds: faces turned against the reference, and edges folded
+scaled to R's area (2 is isometric). flips, folds: faces inverted with respect to the reference, and edges folded
 by more than 120 degrees. drift: largest distance of samples from the mesh to the reference and back (how
 much of R is covered), in mean edges of the reference. n_out, n_in: outer iterations and patches per
 iteration. map_s: seconds of the making of the start from landmarks. factorization_ms: time of one
-factorization of the whole mesh' system, a yardstick for the time; left out above 200000 vertices.
+factorization of the whole mesh' system, a unit of time; left out above 200000 vertices.
 )";
 
 const char* const landmarks_start = "landmarks";
@@ -120,14 +120,14 @@ std::vector<std::vector<std::size_t>> faces_of(const Mesh& mesh)
   return result;
 }
 
-// what does not hold of the promises, in words
-std::string broken_promises(const Pair& pair,
-                            const Mesh& output,
-                            const Defects_in_and_out& defects,
-                            std::size_t monotonicity_violations)
+// the guarantees that are violated, in words
+std::string violated_guarantees(const Pair& pair,
+                                const Mesh& output,
+                                const Defects_in_and_out& defects,
+                                std::size_t monotonicity_violations)
 {
   const Mesh& input = pair.start;
-  Broken_promises broken;
+  Violated_guarantees broken;
   broken.check_run(input, output, pair.reference, defects, monotonicity_violations,
                    [&](Mesh::Vertex_index v) { return !input.is_border(v); });
   broken.add_if(output.number_of_vertices() != pair.source.number_of_vertices() ||
@@ -198,7 +198,7 @@ bool run(const Command_line& arguments, Row& row)
   if(start == landmarks_start)
     write(pair.start, s.output_folder, base + "_start");
   return !s.check || add_check(row, s.method, [&]() {
-    return broken_promises(pair, mesh, defects, visitor.violations);
+    return violated_guarantees(pair, mesh, defects, visitor.violations);
   });
 }
 

@@ -80,7 +80,7 @@ void write(const std::string& file, const std::vector<int>& numbers)
 std::vector<Vector_3> positions(const Patch& patch)
 {
   std::vector<Vector_3> points;
-  for(const Placed_vertex& p : patch.placed)
+  for(const Located_vertex& p : patch.located)
     points.push_back(p.position);
   return points;
 }
@@ -111,7 +111,7 @@ std::vector<Vector_2> visit(Patch& patch,
           .decide(patch, Patch_samples(), state, mover, energy.density(), limits, pass == 0)
           .accepted)
       break;
-    patch.placed = backtracking.candidate();
+    patch.located = backtracking.candidate();
     const std::vector<double>& steps = backtracking.steps();
     for(std::size_t v = 0; v < u.size(); ++v)
       u[v] += steps[v] * (mover.target()[v] - u[v]);
@@ -139,7 +139,7 @@ void write_stages(const std::string& mesh_file,
   Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
   state.is_free.assign(copy.points.size(), 1);
   RCO::Result unused;
-  place_on_reference(copy.points, surface, state, unused);
+  locate_on_reference(copy.points, surface, state, unused);
 
   Face_geometry geometry;
   geometry.update(copy.mesh, copy.points);

@@ -2,9 +2,9 @@
 
 #include "../Monotonicity_visitor.h"
 #include "../driver.h"
+#include "../guarantees.h"
 #include "../library_call.h"
 #include "../meshes.h"
-#include "../promises.h"
 #include "../result_columns.h"
 #include "../settings.h"
 #include "subdivided.h"
@@ -38,12 +38,11 @@ which may be of triangles or quads, or else against its own shape.
   R"(
 in: the mesh that the run starts from; out: what it makes of it. edge: length over mean length. angle: at
 all corners, in degrees. planarity: distance of a quad's diagonals over their mean length (0 is planar).
-nonconvex: quads that are not convex as seen along the reference's normals. flips, folds: faces turned
-against the reference, and edges folded by more than 120 degrees. drift: largest distance of samples from
+nonconvex: quads that are not convex as seen along the reference's normals. flips, folds: faces inverted with respect to the reference, and edges folded by more than 120 degrees. drift: largest distance of samples from
 the mesh to the reference and back; distance_to_reference_in: largest distance of a vertex; all in mean
 edges of the reference. energy: mean over the elements. n_out, n_in: outer iterations and patches per
 iteration. flattened_percent: accepted patches that went through the plane. factorization_ms: time of one
-factorization of the whole mesh' system, a yardstick for the time; left out above 200000 vertices.
+factorization of the whole mesh' system, a unit of time; left out above 200000 vertices.
 )";
 
 struct Files
@@ -116,21 +115,21 @@ void add_shapes(Row& row, const Figures& figures, const std::string& when)
   row.add("planarity_mean" + when, figures.planarity.mean);
 }
 
-// what does not hold of the promises, in words
-std::string broken_promises(const Mesh& input,
-                            const Mesh& output,
-                            const Mesh& reference,
-                            const Figures& in,
-                            const Figures& out,
-                            std::size_t monotonicity_violations,
-                            bool relax_borders)
+// the guarantees that are violated, in words
+std::string violated_guarantees(const Mesh& input,
+                                const Mesh& output,
+                                const Mesh& reference,
+                                const Figures& in,
+                                const Figures& out,
+                                std::size_t monotonicity_violations,
+                                bool relax_borders)
 {
   // where borders are relaxed, vertices of theirs that did not move may be corners, which stay
   const auto is_free = [&](Mesh::Vertex_index v) {
     return !input.is_border(v) ||
            (relax_borders && !input.is_isolated(v) && input.point(v) != output.point(v));
   };
-  Broken_promises broken;
+  Violated_guarantees broken;
   broken.check_run(input, output, reference, {in.defects, out.defects}, monotonicity_violations,
                    is_free);
   broken.add_if(out.nonconvex_quads > in.nonconvex_quads, "non-convex quads rose");
@@ -173,8 +172,8 @@ bool run(const Command_line& arguments, Row& row)
 
   write(mesh, s.output_folder, base_name(files.mesh));
   return !s.check || add_check(row, s.method, [&]() {
-    return broken_promises(input, mesh, reference, in, out, visitor.violations,
-                           arguments.has("--relax-borders"));
+    return violated_guarantees(input, mesh, reference, in, out, visitor.violations,
+                               arguments.has("--relax-borders"));
   });
 }
 

@@ -2,9 +2,9 @@
 
 #include "../Monotonicity_visitor.h"
 #include "../driver.h"
+#include "../guarantees.h"
 #include "../library_call.h"
 #include "../meshes.h"
-#include "../promises.h"
 #include "../result_columns.h"
 #include "../settings.h"
 
@@ -39,11 +39,11 @@ of JSON. run.py does so for many meshes and settings.
   common_usage +
   R"(
 theta: smallest angle per face, in degrees. drift: largest distance of samples from the mesh to the
-reference and back, in mean edges of the reference. flips, folds: faces turned against the reference,
+reference and back, in mean edges of the reference. flips, folds: faces inverted with respect to the reference,
 and edges folded by more than 120 degrees. n_out, n_in: outer iterations and patches per iteration.
 conformal, convex border, failed, overlapping: how patches were flattened. mean_flattening_distortion:
 mean symmetric Dirichlet energy of the flattenings (4 is isometric). factorization_ms: time of one
-factorization of the whole mesh' system, a yardstick for the time; left out above 200000 vertices.
+factorization of the whole mesh' system, a unit of time; left out above 200000 vertices.
 )";
 
 struct Visitor : Monotonicity_visitor
@@ -66,12 +66,12 @@ struct Visitor : Monotonicity_visitor
   }
 };
 
-// what does not hold of the promises, in words
-std::string broken_promises(const Mesh& input,
-                            const Mesh& output,
-                            const Mesh& reference,
-                            const Edge_map& is_constrained,
-                            std::size_t monotonicity_violations)
+// the guarantees that are violated, in words
+std::string violated_guarantees(const Mesh& input,
+                                const Mesh& output,
+                                const Mesh& reference,
+                                const Edge_map& is_constrained,
+                                std::size_t monotonicity_violations)
 {
   std::vector<char> is_fixed(input.number_of_vertices(), 0);
   for(const Mesh::Edge_index e : input.edges())
@@ -79,7 +79,7 @@ std::string broken_promises(const Mesh& input,
       is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
   const Defects_in_and_out defects = {RCO::orientation_defects(input, reference),
                                       RCO::orientation_defects(output, reference)};
-  Broken_promises broken;
+  Violated_guarantees broken;
   broken.check_run(input, output, reference, defects, monotonicity_violations,
                    [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); });
   broken.add_if(RCO::angle_statistics(output).minimum < RCO::angle_statistics(input).minimum,
@@ -152,7 +152,7 @@ bool run(const Command_line& arguments, Row& row)
 
   write(mesh, s.output_folder, base_name(file));
   return !s.check || add_check(row, s.method, [&]() {
-    return broken_promises(input, mesh, reference, is_constrained, visitor.violations);
+    return violated_guarantees(input, mesh, reference, is_constrained, visitor.violations);
   });
 }
 

@@ -44,14 +44,13 @@ largest minimum angle (of equals, with the largest mean), and its time alone cou
 
 theta: smallest angle per face, in degrees. below: faces whose smallest angle is. drift: largest distance
 of samples from the mesh to the reference and back, the larger of both, and the larger root mean square,
-in mean edges of the reference. turn: by how much faces are turned against the reference, in degrees (mean
+in mean edges of the reference. turn: by how much faces are inverted with respect to the reference, in degrees (mean
 over the area), and percent of the area in faces turned by more than 20 and 45. sharp edges: those that
-are left, and new ones, over the length that there was. flips, folds: faces turned against the reference,
+are left, and new ones, over the length that there was. flips, folds: faces inverted with respect to the reference,
 and edges folded by more than 120 degrees. off_reference: largest distance of a vertex from the reference
 over the diagonal. bound: estimate of the largest minimum angle that the connectivity allows. note: how
 the run ended; CGAL's safe angle smoothing may stop off the reference, and is projected then. time_s:
-processor time. factorization_ms: time of one factorization of the whole mesh' system, a yardstick for the
-time; left out above 200000 vertices.
+processor time. factorization_ms: time of one factorization of the whole mesh' system, a unit of time; left out above 200000 vertices.
 )";
 
 void add_figures(Row& row, const Mesh& mesh, const Mesh& reference)

@@ -1,4 +1,4 @@
-// Makes three tessellations of one shape, to see how much the result of an optimization hangs on
+// Makes three tessellations of one shape, to see how much the result of an optimization depends on
 // the triangles it starts from: an isotropic one, one like a raw scan, and one with slivers. The
 // vertices of all three lie on the input mesh.
 //

@@ -1,11 +1,11 @@
 #ifndef RCO_BENCHMARK_CHECKED_RUN_H
 #define RCO_BENCHMARK_CHECKED_RUN_H
 
-// One call of the package, with everything checked that it promises.
+// One call of the package, with all of its guarantees checked.
 
 #include "../Monotonicity_visitor.h"
+#include "../guarantees.h"
 #include "../meshes.h"
-#include "../promises.h"
 #include "Locations.h"
 #include "outcome.h"
 
@@ -114,18 +114,19 @@ struct Located
 // what a vertex may do
 enum class Vertex_freedom : char { fixed, on_reference, on_line };
 
-// What the result breaks, whatever the energy. `placed` is the input with its free vertices put onto
-// the reference: that is what must not become worse.
-inline Broken_promises broken_promises(const Mesh& input,
-                                       const Located& placed,
-                                       const Located& output,
-                                       const Mesh& reference,
-                                       const std::vector<Vertex_freedom>& freedom,
-                                       const CGAL::Reference_constrained_optimization::Result& r,
-                                       std::size_t monotonicity_violations)
+// What the result breaks, whatever the energy. `located` is the input with its free vertices put onto the
+// reference: that is what must not become worse.
+inline Violated_guarantees
+violated_guarantees(const Mesh& input,
+                    const Located& placed,
+                    const Located& output,
+                    const Mesh& reference,
+                    const std::vector<Vertex_freedom>& freedom,
+                    const CGAL::Reference_constrained_optimization::Result& r,
+                    std::size_t monotonicity_violations)
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
-  Broken_promises broken;
+  Violated_guarantees broken;
   broken.add_if(!same_connectivity(input, output.mesh), "connectivity changed");
   std::size_t bad = 0, moved = 0;
   for(const Mesh::Vertex_index v : input.vertices())
@@ -154,11 +155,11 @@ inline Broken_promises broken_promises(const Mesh& input,
   };
   Defects_in_and_out defects;
   const bool has_triangles = CGAL::is_triangle_mesh(input);
-  // distances of quads are looked for anew at the end, and in a soup of sheets found too large
+  // distances of quads are computed again at the end, and may be too large in a soup of sheets
   const double allowed = (std::max)(1.1 * r.drift_bound, r.initial_drift);
   broken.add_if(has_triangles && r.drift > allowed * (1 + 1e-9),
                 "drift of " + in_short(r.drift) + " where no more than " + in_short(allowed) +
-                  " is promised");
+                  " is guaranteed");
   if(CGAL::is_triangle_mesh(reference))
   {
     if(has_triangles)
@@ -184,18 +185,18 @@ inline Broken_promises broken_promises(const Mesh& input,
 inline void check_angles(const Mesh& placed,
                          const Mesh& output,
                          const CGAL::Reference_constrained_optimization::Result& r,
-                         Broken_promises& broken)
+                         Violated_guarantees& broken)
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
   const RCO::Angle_statistics before = RCO::angle_statistics(placed),
                               after = RCO::angle_statistics(output);
   const double rounding = 1e-6; // of a small angle that is found by its cosine
-  const bool mends = number_of_defects(r) < number_of_initial_defects(r); // that may cost
-  broken.add_if(!mends && after.minimum < before.minimum - rounding,
+  const bool repairs = number_of_defects(r) < number_of_initial_defects(r); // that may cost
+  broken.add_if(!repairs && after.minimum < before.minimum - rounding,
                 "minimum angle fell from " + in_short(before.minimum) + " degrees by " +
                   in_short(before.minimum - after.minimum));
   const double little = 0.05;
-  broken.add_if(!mends && after.mean < before.mean - little,
+  broken.add_if(!repairs && after.mean < before.mean - little,
                 "mean angle fell from " + in_short(before.mean) + " degrees by " +
                   in_short(before.mean - after.mean));
 }
@@ -204,10 +205,10 @@ inline void check_angles(const Mesh& placed,
 inline void check_shape(const Mesh& input,
                         const Mesh& output,
                         const CGAL::Reference_constrained_optimization::Result& r,
-                        Broken_promises& broken)
+                        Violated_guarantees& broken)
 {
   namespace RCO = CGAL::Reference_constrained_optimization;
-  // where defects are mended faces have to turn
+  // where defects are repaired faces have to turn
   if(r.number_of_feature_edges == 0 || r.initial_drift > 0 || number_of_initial_defects(r) > 0 ||
      !CGAL::is_triangle_mesh(input))
     return;
@@ -259,7 +260,7 @@ inline Outcome checked_run(const Mesh& input,
       if(same_bits(mesh, input))
         return Outcome::refused;
       text = "mesh touched in spite of the refusal: " + text;
-      return Outcome::broken_promise;
+      return Outcome::violated_guarantee;
     }
     figures.seconds = r.running_time;
     Monotonicity_visitor unused;
@@ -272,9 +273,9 @@ inline Outcome checked_run(const Mesh& input,
         freedom[v] = Vertex_freedom::fixed;
       else if(input.is_border(v))
         freedom[v] = settings.relax_constraints ? Vertex_freedom::on_line : Vertex_freedom::fixed;
-    Broken_promises broken =
-      broken_promises(input, {placed, placed_locations}, {mesh, locations},
-                      reference ? *reference : input, freedom, r, visitor.violations);
+    Violated_guarantees broken =
+      violated_guarantees(input, {placed, placed_locations}, {mesh, locations},
+                          reference ? *reference : input, freedom, r, visitor.violations);
     check_angles(placed, mesh, r, broken);
     if(!reference)
       check_shape(input, mesh, r, broken);
@@ -286,7 +287,7 @@ inline Outcome checked_run(const Mesh& input,
     figures.angle_minimum_out = out.minimum;
     figures.angle_mean_out = out.mean;
     if(!text.empty())
-      return Outcome::broken_promise;
+      return Outcome::violated_guarantee;
     const bool repairs = number_of_defects(r) < number_of_initial_defects(r);
     // less is rounding
     const bool gains = r.final_energy < r.initial_energy * (1 - 1e-9);

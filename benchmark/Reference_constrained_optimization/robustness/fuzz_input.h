@@ -6,7 +6,7 @@
 
 #include "Byte_reader.h"
 #include "Soup.h"
-#include "nasty_inputs.h"
+#include "stress_inputs.h"
 #include "variants.h"
 
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>

@@ -1,10 +1,10 @@
-// A fuzz target: bytes become a small mesh and parameters, the package optimizes it, and what it
-// promises is verified. With RCO_FUZZ_VERBOSE in the environment an input and what became of it are
-// printed, too: for the replay of a finding.
+// A fuzz target: bytes are decoded to a small mesh and parameters, the package optimizes it, and its
+// guarantees are verified. With RCO_FUZZ_VERBOSE in the environment an input and its outcome are printed,
+// to reproduce a failure.
 
 #include "../Monotonicity_visitor.h"
+#include "../guarantees.h"
 #include "../meshes.h"
-#include "../promises.h"
 #include "Locations.h"
 #include "checked_run.h"
 #include "fuzz_input.h"
@@ -207,8 +207,8 @@ void print(const std::string& text)
     std::cerr << text << std::endl;
 }
 
-// what the package breaks of its promises, in words
-std::string broken_promises(Fuzz_input& in)
+// the guarantees that the package violates, in words
+std::string violated_guarantees(Fuzz_input& in)
 {
   const Edge_map reference_lines = edge_map(in.reference, in.reference_edges);
   Run run(in, in.reference);
@@ -240,8 +240,8 @@ std::string broken_promises(Fuzz_input& in)
   Run placed(in, in.reference);
   optimize(in, reference_lines, 0, placed);
   std::string text =
-    broken_promises(in.mesh, {placed.mesh, placed.locations}, {run.mesh, run.locations},
-                    in.reference, freedom(in, run), r, run.visitor.violations)
+    violated_guarantees(in.mesh, {placed.mesh, placed.locations}, {run.mesh, run.locations},
+                        in.reference, freedom(in, run), r, run.visitor.violations)
       .text();
   if(text.empty() && in.twice)
   {
@@ -263,7 +263,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string text;
   try
   {
-    text = broken_promises(input);
+    text = violated_guarantees(input);
   }
   catch(const std::exception& e)
   {

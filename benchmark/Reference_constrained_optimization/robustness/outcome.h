@@ -14,15 +14,15 @@ enum class Outcome {
   nothing_to_do,
   refused,
   no_mesh, // the data do not make a half-edge mesh: the package is not reached
-  broken_promise,
+  violated_guarantee,
   exception, // of another type than Invalid_input
   out_of_memory
 };
 
 inline std::string name(Outcome outcome)
 {
-  const std::array<const char*, 7> names = {
-    {"improved", "nothing to do", "refused", "no mesh", "broken promise", "exception", "memory"}};
+  const std::array<const char*, 7> names = {{"improved", "nothing to do", "refused", "no mesh",
+                                             "violated guarantee", "exception", "memory"}};
   return names[std::size_t(outcome)];
 }
 

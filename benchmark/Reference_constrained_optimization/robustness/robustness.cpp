@@ -4,8 +4,8 @@
 #include "../driver.h"
 #include "Soup.h"
 #include "checked_run.h"
-#include "nasty_inputs.h"
 #include "outcome.h"
+#include "stress_inputs.h"
 #include "variants.h"
 
 #include <CGAL/Polygon_mesh_processing/manifoldness.h>
@@ -106,13 +106,13 @@ void read_file(const std::string& path, bool is_triangulated, Input& in)
   in.expected = expected_of_file(in.mesh);
 }
 
-void generate(const Nasty_input& nasty, bool has_noise, Input& in)
+void generate(const Stress_input& stress_input, bool has_noise, Input& in)
 {
-  in.expected = has_noise ? nasty.expected_with_noise : nasty.expected;
-  in.is_constrained = nasty.is_constrained;
-  in.has_reference = nasty.has_reference;
-  in.mesh = to_mesh(nasty.mesh);
-  in.reference = nasty.has_reference ? to_mesh(nasty.reference) : in.mesh;
+  in.expected = has_noise ? stress_input.expected_with_noise : stress_input.expected;
+  in.is_constrained = stress_input.is_constrained;
+  in.has_reference = stress_input.has_reference;
+  in.mesh = to_mesh(stress_input.mesh);
+  in.reference = stress_input.has_reference ? to_mesh(stress_input.reference) : in.mesh;
 }
 
 void tell(const Input& in, Outcome outcome, std::string text, Row& row)
@@ -128,12 +128,12 @@ void tell(const Input& in, Outcome outcome, std::string text, Row& row)
 bool run(const Command_line& arguments, Row& row)
 {
   const std::string name = arguments.name(0, "");
-  const std::vector<Nasty_input> all = nasty_inputs();
+  const std::vector<Stress_input> all = stress_inputs();
   if(arguments.has("--names"))
   {
     std::string names;
-    for(const Nasty_input& nasty : all)
-      names += (names.empty() ? "" : "|") + nasty.name;
+    for(const Stress_input& stress_input : all)
+      names += (names.empty() ? "" : "|") + stress_input.name;
     row.add("names", names);
     return true;
   }
@@ -152,11 +152,11 @@ bool run(const Command_line& arguments, Row& row)
   {
     if(arguments.has("--generated"))
     {
-      const auto nasty =
-        std::find_if(all.begin(), all.end(), [&](const Nasty_input& n) { return n.name == name; });
-      if(nasty == all.end())
+      const auto stress_input =
+        std::find_if(all.begin(), all.end(), [&](const Stress_input& n) { return n.name == name; });
+      if(stress_input == all.end())
         throw std::invalid_argument("there is no generated input of this name");
-      generate(*nasty, variant.noise > 0, in);
+      generate(*stress_input, variant.noise > 0, in);
     }
     else
       read_file(name, arguments.has("--triangulate"), in);

@@ -36,7 +36,7 @@ VARIANTS = (
     Variant("another seed", "--seed 1", "seed"),
     Variant("noise", "--noise 0.3"),
 )
-OUTCOMES = ("improved", "nothing to do", "refused", "no mesh", "broken promise", "exception", "memory",
+OUTCOMES = ("improved", "nothing to do", "refused", "no mesh", "violated guarantee", "exception", "memory",
             "time-out", "crash")
 
 # `arguments` are those that make the program read or generate the input

@@ -4,17 +4,15 @@
 
 The concept `DistortionDensity` describes a function of the 2x2 Jacobian \f$ J \f$ of the affine map
 from an element's rest triangle to the element as it lies on the reference. A positive determinant
-means that the element agrees with the orientation of the reference, a negative one that it is
-turned over.
+means that the element agrees with the orientation of the reference, a negative one that it is inverted.
 
 The function must
 
 - be finite and twice differentiable for *every* Jacobian, those with \f$ \det J \le 0 \f$ and
-  \f$ J = 0 \f$ included: a density with a barrier is continued smoothly behind a cap, so that a mesh
-  that starts badly can be compared with itself and repaired;
+  \f$ J = 0 \f$ included: a density with a barrier is continued smoothly behind a cap, so that the energy of
+  a mesh with inverted elements is defined, and they can be repaired;
 - be positive, since tolerances are relative and elements are compared by ratios;
-- not change if a rotation is applied after \f$ J \f$, since the frame in which an element is seen
-  turns with it.
+- not change if a rotation is applied after \f$ J \f$, since the frame of an element rotates with it.
 
 It need not be convex. All functions are called from several threads at a time and must not change
 the object.
@@ -34,8 +32,8 @@ public:
   /// returns the value at `J`.
   double value(const Eigen::Matrix2d& J) const;
 
-  /// returns the derivatives of the value with respect to the entries of `J`, each at the place of
-  /// its entry.
+  /// returns the derivatives of the value with respect to the entries of `J`, each at the position of its
+  /// entry.
   Eigen::Matrix2d gradient(const Eigen::Matrix2d& J) const;
 
   /// returns the second derivatives, with the entries of `J` in column-major order: (0, 0), (1, 0),

@@ -2,14 +2,14 @@
 \ingroup PkgReferenceConstrainedOptimizationConcepts
 \cgalConcept
 
-The concept `ReferenceConstrainedEnergy` says what `CGAL::reference_constrained_optimize()` asks of
-an energy. An energy has *elements*, *stencils*, or both; `CGAL::Reference_constrained_optimization::sum()`
-makes weighted sums of energies.
+The concept `ReferenceConstrainedEnergy` describes an energy for `CGAL::reference_constrained_optimize()`.
+An energy has *elements*, *stencils*, or both; `CGAL::Reference_constrained_optimization::sum()` makes
+weighted sums of energies.
 
-An *element* is a triangle of three vertices of a face together with the shape that this triangle would like
-to have, its rest triangle. What deviation from that shape costs is up to the density, which is evaluated at the
-Jacobian of the affine map from the rest triangle to the element as it lies on the reference, and multiplied by
-the element's weight. A triangle has usually one element, a quadrilateral four, one per corner, which overlap. A
+An *element* is a triangle of three vertices of a face together with its shape at rest, the rest triangle.
+The cost of a deviation from that shape is given by the density, which is evaluated at the Jacobian of the
+affine map from the rest triangle to the element as it lies on the reference, and multiplied by the
+element's weight. A triangle has usually one element, a quadrilateral four, one per corner, which overlap. A
 face may have none, but the mesh must have one. An energy without elements is therefore a summand only.
 
 A *stencil* is a list of vertices, anywhere in the mesh, whose positions in space the energy is a function of. An
@@ -34,7 +34,7 @@ public:
   /// model of `DistortionDensity`; of an energy with elements.
   typedef unspecified_type Density;
 
-  /// by what the worst elements are judged. *Optional*; without it the sum alone counts.
+  /// the criterion for the worst elements. *Optional*; without it only the sum matters.
   static constexpr CGAL::Reference_constrained_optimization::Element_criterion element_criterion;
 
   /// returns the density, which all elements share.
@@ -45,18 +45,18 @@ public:
 
   Within an element, `Energy_element::corners` are three different positions from 0 to
   `context.degree(f)` exclusively, in the cyclic order of the face; `Energy_element::rest` has the
-  unit of length of the mesh, and a positive determinant; `Energy_element::weight` is positive. `context` knows the
-  connectivity, the mean edge length and the areas of mesh and reference; the object that is handed over is
-  a `CGAL::Reference_constrained_optimization::Mesh_energy_context`, which also has the mesh, its point map and
-  its descriptors: an energy that asks for them, for example to read a property map, is a template of the
-  context's type.
+  unit of length of the mesh, and a positive determinant; `Energy_element::weight` is positive. `context`
+  provides the connectivity, the mean edge length and the areas of mesh and reference; the object that is
+  handed over is a `CGAL::Reference_constrained_optimization::Mesh_energy_context`, which also has the mesh,
+  its point map and its descriptors: an energy that asks for them, for example to read a property map, is a
+  template of the context's type.
 
   It is called once for every face that is to be optimized (all, or those of the range of faces), in
   the order of `faces(mesh)`, from the thread that called `CGAL::reference_constrained_optimize()`,
   before any vertex has moved. What it appends must depend on the input alone.
 
-  \throws CGAL::Reference_constrained_optimization::Invalid_input if the energy is not for faces
-  like this one. The mesh is then left as it was.
+  \throws CGAL::Reference_constrained_optimization::Invalid_input if the energy does not support this face.
+  The mesh is then left as it was.
   */
   void append_elements(
     const CGAL::Reference_constrained_optimization::Energy_context& context,
@@ -86,8 +86,8 @@ public:
   writes the gradient by the coordinates of the points, one after the other, and a positive semi-definite
   matrix in place of the Hessian, and returns the value.
 
-  This function is *optional*. Where it is missing, derivatives are taken by differences of `value()`, a
-  ten-thousandth of a mean edge apart, and negative eigenvalues are set to zero.
+  This function is *optional*. Where it is missing, derivatives are computed from differences of `value()`,
+  a ten-thousandth of a mean edge apart, and negative eigenvalues are set to zero.
   */
   double projected_derivatives(
     std::size_t stencil,

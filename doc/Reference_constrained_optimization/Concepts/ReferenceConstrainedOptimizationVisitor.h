@@ -2,9 +2,9 @@
 \ingroup PkgReferenceConstrainedOptimizationConcepts
 \cgalConcept
 
-The concept `ReferenceConstrainedOptimizationVisitor` describes an object that watches an
-optimization and may stop it. It is handed over with the named parameter `visitor`, by `std::ref`
-if the caller wants to read from it afterwards; otherwise a copy is used.
+The concept `ReferenceConstrainedOptimizationVisitor` describes an object that observes an optimization and
+may stop it. It is passed with the named parameter `visitor`, by `std::ref` if the caller wants to read from
+it afterwards; otherwise a copy is used.
 
 All calls come from the thread that called `CGAL::reference_constrained_optimize()`. If one of them
 throws, the mesh holds the last accepted state and the exception reaches the caller. Rounds follow
@@ -32,10 +32,10 @@ public:
   /// keep its result. Patches that were not visited because the round was cut short are left out.
   void on_patch_end(const CGAL::Reference_constrained_optimization::Patch_report& report);
 
-  /// Returns `false` to end the optimization. It is asked often: between the steps of all that takes
-  /// long, within patches, too, and while the calling thread waits for others; on a mesh of 50000
-  /// vertices more than ten times per second. It should be quick to answer, and is not asked again
-  /// after it said no. Work on patches that are not finished is given up, and the mesh holds the last
-  /// accepted state. During setup, which precedes the first iteration, the mesh is left as it was.
+  /// Returns `false` to end the optimization. It is called often, also within patches and while the calling
+  /// thread waits for others; on a mesh of 50000 vertices more than ten times per second. It should be
+  /// fast, and is not called again after it returned `false`. Unfinished patches are abandoned, and the
+  /// mesh holds the last accepted state. During setup, which precedes the first iteration, the mesh is left
+  /// as it was.
   bool go_further();
 };

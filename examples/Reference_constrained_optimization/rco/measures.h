@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
-// what a measure has to do with the verdict on a run
+// the role of a measure in the outcome of a run
 enum class Role {
   figure,    // nothing
-  condition, // it is told if it got worse
-  aim        // what the energy is about: the mesh is improved if one of these is better
+  condition, // reported if it got worse
+  aim        // objective of the energy: the mesh is improved if one of these is better
 };
 
 struct Measure
@@ -102,7 +102,7 @@ inline void add_quads(Measures& m, const Mesh& mesh, const Mesh& reference, bool
 inline void add_distortion(Measures& m, const Mesh& mesh, const Mesh& reference, const Mesh& source)
 {
   const auto none = CGAL::parameters::default_values();
-  // a map that misses a part of the reference is not let off for it
+  // the area of the reference, so that a map that covers only a part of it is not better for that
   const double area = CGAL::to_double(CGAL::Polygon_mesh_processing::area(reference));
   const RCO::Distortion_statistics d = RCO::distortion_statistics(source, mesh, none, none, area);
   m.smaller_is_better(Role::aim, "mean_distortion", "distortion (2: isometric), mean", 3, d.mean);
@@ -111,7 +111,7 @@ inline void add_distortion(Measures& m, const Mesh& mesh, const Mesh& reference,
   m.smaller_is_better(Role::condition, "maximum_distortion", "  maximum", 2, d.maximum);
 }
 
-// The reference is null if it is the mesh itself: that is as it was.
+// The reference is null if it is the mesh itself: deviations are zero then.
 inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
 {
   const bool is_itself = reference == nullptr;
@@ -123,7 +123,7 @@ inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
   m.figure("root_mean_square_drift", "  root mean square", 3, drift.root_mean_square() / unit);
   const RCO::Normal_deviation n =
     is_itself ? RCO::Normal_deviation() : RCO::normal_deviation(mesh, *reference);
-  m.figure("mean_normal_deviation", "turn of faces against it (degrees), mean", 2, n.mean);
+  m.figure("mean_normal_deviation", "normal deviation of faces (degrees), mean", 2, n.mean);
   m.figure("maximum_normal_deviation", "  maximum", 2, n.maximum);
   m.figure("area_turned_above_10", "  part of the area above 10", 4, n.share_above_10);
   m.figure("area_turned_above_20", "  part of the area above 20", 4, n.share_above_20);
@@ -138,7 +138,7 @@ inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
 }
 
 // Measures a mesh against its reference, null if that is the mesh itself; the source serves maps only.
-// What a verdict is about does not take long; what tells of the shape may be left out.
+// Measures that decide on the outcome are fast; those of the shape may be left out.
 inline std::vector<Measure> measure(const Mesh& mesh,
                                     const Mesh* other_reference,
                                     const Mesh& source,

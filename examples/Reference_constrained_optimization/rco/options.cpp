@@ -16,13 +16,13 @@ namespace {
 
 const char* const general_usage =
   R"(rco moves the vertices of a mesh along a reference surface so that its faces get better.
-Which vertices a face joins stays as it is; the shape is kept.
+The connectivity does not change; the shape is kept.
 
 Usage:
   rco angle IN [-o OUT]                 larger angles for a triangle mesh
   rco quad IN [--reference R] [-o OUT]  regular quads: even edges, right angles
   rco map SOURCE REFERENCE [--landmarks F | --initial M] [-o OUT]
-                                        the mesh of SOURCE laid over REFERENCE with little distortion
+                                        the mesh of SOURCE mapped onto REFERENCE with little distortion
   rco COMMAND --help                    the options of a command
   rco --help | --version
 
@@ -30,8 +30,7 @@ Files are OFF, OBJ, PLY or STL; the ending of the name tells which.
 )";
 
 const char* const exit_codes = R"(Exit codes:
-   0  improved: a measure that the energy is about is better (what got worse is said in the
-      same line); help and version, too
+   0  improved: an objective of the energy is better (what got worse is in the same line); help and version, too
    1  something failed that should not: a bug, or no memory
    2  bad usage: the command line makes no sense
    3  unreadable file: not there, or no polygon mesh, or bad landmarks
@@ -41,7 +40,7 @@ const char* const exit_codes = R"(Exit codes:
   11  out of time before anything was improved (OUT is written)
   12  interrupted by Ctrl-C or SIGTERM: what was reached by then is in OUT; a second
       Ctrl-C ends the program at once, and so does one while it measures
-  14  not better: no measure that the energy is about is, and something is worse (OUT is written)
+  14  not better: no objective of the energy is, and something is worse (OUT is written)
 )";
 
 const char* const angle_usage = R"(Usage: rco angle IN [-o OUT] [options]
@@ -70,7 +69,7 @@ Examples:
 const char* const map_usage =
   R"(Usage: rco map SOURCE REFERENCE [--landmarks F | --initial M] [-o OUT] [options]
 
-Lays the mesh of one shape over another so that the map between the two distorts little. It starts
+Maps the mesh of one shape onto another with little distortion. It starts
 from landmarks; or from M, a mesh with the faces of SOURCE on the surface of REFERENCE; or, with
 neither, from SOURCE itself, which must then lie close to REFERENCE everywhere.
 
@@ -213,7 +212,7 @@ class Option_reader
     add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 100");
     add("maximum-running-time", number(o.maximum_running_time), "seconds; default: no limit");
     add("energy-tolerance", number(o.energy_tolerance),
-        "a rest once an iteration gains less than this part; default: 0.004");
+        "the relative decrease of the energy below which the optimization stops; default: 0.004");
     add("random-seed", count(m_whole.random_seed), "default: 0");
     add(
       "sharp-edges", text(m_sharp_edges, "S"),

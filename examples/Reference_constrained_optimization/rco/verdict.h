@@ -38,12 +38,12 @@ inline std::string text_of_change(const Measure& before, const Measure& after)
   return name + ' ' + text(before.value, digits) + " -> " + text(after.value, digits);
 }
 
-// The mesh is improved if some measure that the energy is about is better. What is worse is no secret.
+// The mesh is improved if some objective of the energy is better. What is worse is reported.
 inline Verdict verdict_on(const RCO::Result& result,
                           const std::vector<Measure>& before,
                           const std::vector<Measure>& after)
 {
-  const double scan_tolerance = 0.1; // where short pieces of sharp edges are anywhere
+  const double scan_tolerance = 0.1; // on scans, which have short sharp edges everywhere
   Verdict verdict;
   bool is_better = false, has_lost_edges = false;
   for(std::size_t i = 0; i < after.size(); ++i)

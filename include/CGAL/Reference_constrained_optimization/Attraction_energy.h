@@ -27,8 +27,8 @@ namespace Reference_constrained_optimization {
  * \f$ \sum_i w_i\,\|p_i - q_i\|^2 / h^2 \f$, where \f$ p_i \f$ is the position of a vertex,
  * \f$ q_i \f$ its target and \f$ h \f$ the mean edge length of the mesh.
  *
- * It is meant as a summand: on its own it says nothing about the shape of elements. At a distance of a mean
- * edge a target of weight 1 costs 1; the density of an undistorted element is 4 for
+ * It is to be used as a summand: it does not depend on the shape of elements. At a distance of a mean edge
+ * a target of weight 1 contributes 1; the density of an undistorted element is 4 for
  * `Symmetric_Dirichlet_density` and \f$ e^{2k} \f$ for `Exponential_MIPS_density`.
  *
  * \cgalModels{ReferenceConstrainedEnergy}
@@ -36,11 +36,11 @@ namespace Reference_constrained_optimization {
 class Attraction_energy
 {
 public:
-  /// a vertex that is pulled.
+  /// a vertex that is attracted.
   struct Target
   {
     std::size_t vertex;    ///< by its position in `vertices(mesh)`.
-    Eigen::Vector3d point; ///< to which it is pulled, in units of length of the mesh.
+    Eigen::Vector3d point; ///< the point that attracts it, in units of length of the mesh.
     double weight = 1;     ///< without unit, finite and not negative.
   };
 

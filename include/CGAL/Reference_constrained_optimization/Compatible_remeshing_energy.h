@@ -33,7 +33,7 @@ namespace Reference_constrained_optimization {
  *
  * Faces and vertices of the two meshes correspond by their positions in `faces()` and
  * `vertices()`. Quads are split into two triangles along the diagonal that is shorter in the
- * source. The energy keeps a copy of the source's shape; the source need not outlive it.
+ * source. The energy keeps a copy of the source.
  *
  * \cgalModels{ReferenceConstrainedEnergy}
  */
@@ -91,7 +91,7 @@ public:
           p[i] = copy.points[copy.mesh.corner_vertex[t[i]]];
         }
         element.rest = internal::triangle_shape(p[0], p[1], p[2]);
-        // a determinant that underflows or is nothing but rounding
+        // a determinant that underflows or is dominated by rounding
         if(!(element.rest.determinant() > 1e-14 * element.rest.squaredNorm()))
           throw Invalid_input("Compatible_remeshing_energy: face " + std::to_string(f) +
                               " of the source has a triangle without area");
@@ -124,7 +124,7 @@ public:
   }
 
 private:
-  // what differs is named at the first face that does
+  // the message names the first face that differs
   int matched_rotation(const Energy_context& context, std::size_t f) const
   {
     const std::string start = "Compatible_remeshing_energy: ";

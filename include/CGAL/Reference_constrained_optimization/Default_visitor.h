@@ -13,7 +13,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * tells a visitor about one patch. Sums run over the patch's own elements and edges, measured on
+ * reports on one patch to a visitor. Sums run over the patch's own elements and edges, measured on
  * the reference.
  */
 struct Patch_report
@@ -24,8 +24,8 @@ struct Patch_report
   std::size_t defects_before = 0;  ///< flips, fold edges and non-convex quads before.
   std::size_t defects_after = 0;   ///< the same after.
   bool accepted = false;           ///< whether the new positions were kept.
-  /// whether the patch belongs to the finishing stage. There the energies contain its barrier on
-  /// angles, and what a step of the stage accepted is taken back if the whole step did not pay.
+  /// whether the patch belongs to the finishing stage. There the energies contain its barrier on angles,
+  /// and accepted patches are reverted if the whole pass is not an improvement.
   bool is_finishing = false;
 };
 
@@ -50,7 +50,7 @@ struct Default_visitor
   void on_round_end() {}
   /// is called once for every patch of a round, after the decision on it.
   void on_patch_end(const Patch_report& /* report */) {}
-  /// is asked often, also within patches and during setup; `false` ends the optimization at the last
+  /// is called often, also within patches and during setup; `false` ends the optimization at the last
   /// accepted state.
   bool go_further() { return true; }
 };

@@ -20,13 +20,13 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * says by what the worst elements of an energy are judged.
+ * is the criterion for the worst elements of an energy.
  */
 enum class Element_criterion {
-  none, ///< the sum alone counts.
-  /// the smallest angle of a triangle: patches that are flattened are no larger than it takes to open sharp
-  /// triangles, a last stage raises the smallest angle of the mesh (`use_finishing_stage`), and, unless the
-  /// energy has stencils, too, the mean of the faces' smallest angles does not fall below that of the input.
+  none, ///< only the sum matters.
+  /// the smallest angle of a triangle: flattened patches are small, a last stage raises the smallest angle
+  /// of the mesh (`use_finishing_stage`), and, unless the energy has stencils, too, the mean of the faces'
+  /// smallest angles does not fall below that of the input.
   smallest_angle
 };
 
@@ -45,14 +45,14 @@ struct Energy_element
   /// the rest triangle: columns are the edge vectors from its first to its second and third vertex
   /// (2x2, units of length of the mesh); the determinant must be positive.
   Eigen::Matrix2d rest = Eigen::Matrix2d::Identity();
-  /// by what the density is multiplied; positive.
+  /// factor of the density; positive.
   double weight = 1;
 };
 
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * shows an energy the meshes it is used on. Vertices and faces are named by their positions in
+ * provides an energy with the mesh it is used on. Vertices and faces are named by their positions in
  * `vertices(mesh)` and `faces(mesh)`.
  */
 class Energy_context
@@ -101,7 +101,7 @@ private:
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * is an `Energy_context` that also knows the mesh itself, so that an energy can use property maps.
+ * is an `Energy_context` that also provides the mesh itself, so that an energy can use property maps.
  *
  * \tparam PolygonMesh the mesh that is optimized
  * \tparam VertexPointMap its point map

@@ -23,7 +23,7 @@ struct Energy_stencil
 {
   /// the vertices, each once, by their positions in `vertices(mesh)`.
   std::array<std::size_t, k> vertices;
-  /// by what the value is multiplied; not negative.
+  /// factor of the value; not negative.
   double weight = 1;
 };
 

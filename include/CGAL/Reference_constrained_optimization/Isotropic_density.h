@@ -153,7 +153,7 @@ private:
     const Eigen::Vector4d a = outer(d.u1, d.v2), b = outer(d.u2, d.v1);
     gradient = f.d1 * e1 + f.d2 * e2;
 
-    // rounding owns the quotients near coinciding singular values: take the limits there
+    // the quotients are dominated by rounding near coinciding singular values: take the limits there
     const double scale = (std::max)(std::abs(d.s1), std::abs(d.s2));
     double twist = d.s1 + d.s2 > 1e-9 * scale ? (f.d1 + f.d2) / (d.s1 + d.s2) : f.d11 + f.d12;
     double flip = d.s1 - d.s2 > 1e-6 * scale ? (f.d1 - f.d2) / (d.s1 - d.s2) : f.d11 - f.d12;

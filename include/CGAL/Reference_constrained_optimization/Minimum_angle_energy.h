@@ -20,9 +20,9 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * drives every triangle towards an equilateral one and punishes the worst most: equation (8) of the
- * paper, \f$ \sum_f \exp(k\,\|J_f\|_F^2 / \det J_f) \f$, with \f$ J_f \f$ the Jacobian of the map
- * from an equilateral triangle to face `f`.
+ * drives every triangle towards an equilateral one, with the largest cost for the worst: equation (8) of
+ * the paper, \f$ \sum_f \exp(k\,\|J_f\|_F^2 / \det J_f) \f$, with \f$ J_f \f$ the Jacobian of the map from
+ * an equilateral triangle to face `f`.
  *
  * A larger exponent factor `k` raises the minimum angle further, at the cost of the mean. On mechanical
  * parts whose features are detected a tenth of it is used.
@@ -35,7 +35,7 @@ class Minimum_angle_energy
 public:
   /// model of `DistortionDensity`.
   typedef Exponential_MIPS_density Density;
-  /// worst elements are judged by their smallest angle.
+  /// the criterion for the worst elements is the smallest angle.
   static constexpr Element_criterion element_criterion = Element_criterion::smallest_angle;
 
   /// constructs the energy. \param exponent_factor the factor `k`, a positive number; 1 is the
@@ -54,7 +54,7 @@ public:
       throw Invalid_input("Minimum_angle_energy: face " + std::to_string(f) + " has " +
                           std::to_string(context.degree(f)) + " vertices, but must be a triangle");
     Energy_element element;
-    // the density does not depend on scale; the mean edge length keeps numbers near one
+    // the density is invariant to scale; the mean edge length keeps numbers near one
     element.rest = equilateral_rest_triangle(context.mean_edge_length());
     elements.push_back(element);
   }

@@ -47,7 +47,7 @@ public:
                        std::size_t f,
                        std::vector<Energy_element>& elements) const
   {
-    // the density does not depend on scale; the mean edge length keeps numbers near one
+    // the density is invariant to scale; the mean edge length keeps numbers near one
     internal::append_corner_elements(context, f, context.mean_edge_length(), elements);
   }
 

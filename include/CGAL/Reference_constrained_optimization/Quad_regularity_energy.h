@@ -25,11 +25,10 @@ namespace Reference_constrained_optimization {
  * \f$ l\,\bar e \f$ to the triangle of corner `i` of face `f` and the corner's two neighbours;
  * \f$ \bar e \f$ is the mean edge length of the input mesh.
  *
- * Angles and edge lengths are evened out together. With \f$ l = 1 \f$ edges resist being stretched
- * as much as being shrunk; with a large \f$ l \f$ all edges want to grow, and what shrinks an edge
- * or flattens a corner costs most. Where irregular vertices do not let angles and lengths be right
- * at once, `Quad_angle_energy` looks after the angles alone. Triangles of a mixed mesh are driven
- * towards equilateral ones with sides \f$ l\,\bar e \f$.
+ * Angles and edge lengths are made uniform together. With \f$ l = 1 \f$ stretched and shrunk edges cost the
+ * same; with a large \f$ l \f$ short edges and flat corners cost most. Where irregular vertices do not
+ * allow right angles and equal lengths at the same time, `Quad_angle_energy` optimizes the angles alone.
+ * Triangles of a mixed mesh are driven towards equilateral ones with sides \f$ l\,\bar e \f$.
  *
  * \cgalModels{ReferenceConstrainedEnergy}
  */

@@ -14,7 +14,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * says why an optimization ended.
+ * is the reason why an optimization ended.
  */
 enum class Status {
   converged,       ///< no patch moves any more, or the energy falls by less than the tolerance.
@@ -22,7 +22,7 @@ enum class Status {
   /// `maximum_running_time` ran out; the mesh holds the last accepted state. It is untouched if that was
   /// during setup: energies and counts of defects are then 0.
   time_limit,
-  interrupted,  ///< the visitor said stop; otherwise the same.
+  interrupted,  ///< the visitor stopped it; otherwise the same.
   nothing_to_do ///< no vertex is free to move; the mesh is as it was.
 };
 
@@ -47,7 +47,7 @@ struct Stage_times
  * reports on a call of `CGAL::reference_constrained_optimize()`.
  *
  * Energies are means over the elements of the energy's density, measured on the mesh as its
- * vertices lie on the reference, and always finite: densities continue finitely beyond their cap.
+ * vertices lie on the reference, and always finite: densities are continued beyond their cap.
  * Lengths are in the unit of the points.
  */
 struct Result
@@ -66,8 +66,8 @@ struct Result
 
   Status status = Status::nothing_to_do; ///< why the optimization ended.
 
-  std::size_t initial_number_of_flips = 0; ///< faces turned against the reference at the start.
-  std::size_t number_of_flips = 0;         ///< faces turned against the reference at the end.
+  std::size_t initial_number_of_flips = 0; ///< inverted faces at the start.
+  std::size_t number_of_flips = 0;         ///< inverted faces at the end.
   /// edges at the start whose two unit face normals have a dot product below -1/2.
   std::size_t initial_number_of_fold_edges = 0;
   std::size_t number_of_fold_edges = 0; ///< the same at the end.
@@ -78,29 +78,31 @@ struct Result
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.
-  /// edges of the mesh that were detected to lie on feature lines, and kept there.
+  /// edges of the mesh that were detected as feature edges.
   std::size_t number_of_feature_edges = 0;
 
-  /// the bound that the drift barrier was set up with, in units of length of the points, where it is
-  /// largest: by default it is smaller where the reference is fine; infinite if it was off.
+  /// the drift bound, in units of length of the points, where it is largest: by default it is smaller where
+  /// the reference is fine; infinite if it was off.
   double drift_bound = std::numeric_limits<double>::infinity();
-  /// how far mesh and reference were apart at the start, in units of length: the largest distance of
-  /// the middles of the mesh's edges and faces from the reference, and of the vertices and middles of creases of the reference from
-  /// the mesh. 0 if the drift was not bounded; `drift()` measures it always, and more closely.
+  /// the distance between mesh and reference at the start, in units of length: the largest one of the
+  /// midpoints of the mesh's edges and faces from the reference, and of the vertices and crease midpoints
+  /// of the reference from the mesh. 0 if the drift was not bounded; `drift()` measures it independently of
+  /// that, at more samples.
   double initial_drift = 0;
-  /// the same at the end; but for rounding no less than the true distance of any of these points.
+  /// the same at the end, an upper bound for these samples up to rounding.
   double drift = 0;
 
   std::size_t conformal_flattenings = 0;     ///< flattenings accepted from the fast path (LSCM).
   std::size_t convex_border_flattenings = 0; ///< from the fall-back (convex border, then descent).
   std::size_t overlapping_flattenings = 0; ///< locally injective, but with a self-crossing border.
-  std::size_t failed_flattenings = 0;      ///< patches given up because neither path was injective.
+  std::size_t failed_flattenings =
+    0; ///< patches that were skipped because neither path was injective.
   /// sums over flattened patches of the mean symmetric Dirichlet energy of the flattening (4 is
   /// isometric); divided by the number of flattenings it tells how developable the patches are.
   double sum_of_flattening_distortion = 0;
   double sum_of_patch_sizes = 0; ///< sum over patches of their number of faces.
 
-  Stage_times times;       ///< where the time went.
+  Stage_times times;       ///< times of the steps.
   double running_time = 0; ///< wall-clock seconds in all.
 };
 

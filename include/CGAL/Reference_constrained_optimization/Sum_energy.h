@@ -23,8 +23,8 @@ namespace Reference_constrained_optimization {
  *
  * is a weighted sum of energies, made by `sum()`.
  *
- * A summand of weight 0 has no effect. Summands may be sums themselves; an energy whose worst elements
- * count keeps that in a sum.
+ * A summand of weight 0 has no effect. Summands may be sums themselves; a sum has the criterion of its
+ * summands for worst elements.
  *
  * \tparam Energy models of `ReferenceConstrainedEnergy`
  *

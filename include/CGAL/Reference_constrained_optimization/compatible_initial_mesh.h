@@ -29,14 +29,14 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * tells what `compatible_initial_mesh()` tried.
+ * reports on a call of `compatible_initial_mesh()`.
  */
 struct Initial_mesh_report
 {
   /// trees of landmarks along which the surfaces were cut.
   std::size_t number_of_trees = 0;
-  /// trees for which both surfaces were laid out in the same convex polygon, every triangle
-  /// positively oriented and the boundary simple by exact predicates: their maps are bijective.
+  /// trees for which both surfaces were flattened to the same convex polygon, with every triangle
+  /// positively oriented and a simple boundary by exact predicates: their maps are bijective.
   std::size_t number_of_bijective_maps = 0;
   /// the tree of the best map: pairs of positions in the range of landmarks. Positions from the
   /// number of landmarks on are points of the border that were added.
@@ -83,7 +83,7 @@ std::vector<int> landmark_positions(const FaceGraph& g,
   return result;
 }
 
-// Surface_mesh::clear() removes property maps, the caller's map of points among them
+// Surface_mesh::clear() removes property maps, including the user's point map
 template <typename Mesh>
 auto remove_elements(Mesh& mesh, int) -> decltype(mesh.clear_without_removing_property_maps())
 {
@@ -105,16 +105,15 @@ void remove_elements(Mesh& mesh, long)
  * of corresponding vertices: a start for `reference_constrained_optimize()` with
  * `Compatible_remeshing_energy`.
  *
- * Both surfaces are cut along a tree of shortest paths between landmarks, laid in the same order
- * around each landmark, and laid out in the same convex polygon by mean value coordinates (Floater,
- * \e Mean \e value \e coordinates, 2003). Each vertex of the source is then located in the
- * reference's triangles in the plane. That both layouts are bijective is checked by exact
- * predicates. Since the choice of the tree decides much about the distortion, several are tried,
- * those along which both surfaces can be cut without detours, and the map of least distortion is
- * kept.
+ * Both surfaces are cut along a tree of shortest paths between landmarks, in the same order around each
+ * landmark, and flattened to the same convex polygon by mean value coordinates (Floater, \e Mean \e value
+ * \e coordinates, 2003). Each vertex of the source is then located in the reference's triangles in the
+ * plane. That both maps are bijective is checked by exact predicates. Since the distortion depends much on
+ * the tree, several are tried, those with the shortest detours on both surfaces, and the map of least
+ * distortion is kept.
  *
  * The two surfaces must be closed and of genus 0, or disks. Borders are mapped onto each other.
- * A reference that is closed and oriented the other way round is turned round first.
+ * A closed reference of opposite orientation is reversed first.
  *
  * An extremity (a limb, an ear) without a landmark shrinks exponentially in the plane: set a
  * landmark at the end of each.
@@ -134,7 +133,7 @@ void remove_elements(Mesh& mesh, long)
  * \param reference the surface on which the output's vertices lie
  * \param landmarks three or more pairs. A vertex is in one pair at most; the two of a pair are both
  *        on the border or both not.
- * \param output_mesh receives the mesh; what it held is removed
+ * \param output_mesh receives the mesh; its previous elements are removed
  * \param np optional parameters of the source and of the search:
  *
  * \cgalNamedParamsBegin
@@ -144,13 +143,12 @@ void remove_elements(Mesh& mesh, long)
  *     \cgalParamDefault{`boost::get(CGAL::vertex_point, source)`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{number_of_iterations}
- *     \cgalParamDescription{the number of trees along which the surfaces are laid out; fewer if
- *                           there are not so many}
+ *     \cgalParamDescription{the number of trees that are tried; fewer if there are not so many}
  *     \cgalParamType{`unsigned int`}
  *     \cgalParamDefault{`6`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{random_seed}
- *     \cgalParamDescription{the seed from which all trees but the first three are made}
+ *     \cgalParamDescription{the seed of all trees but the first three}
  *     \cgalParamType{`unsigned int`}
  *     \cgalParamDefault{`0`}
  *   \cgalParamNEnd
@@ -159,7 +157,7 @@ void remove_elements(Mesh& mesh, long)
  * \param np_reference the parameter `vertex_point_map` of `reference`
  * \param np_output the parameter `vertex_point_map` of `output_mesh`
  *
- * \return what was tried.
+ * \return statistics of the trees that were tried.
  *
  * \throws Invalid_input if a mesh cannot be read (see `reference_constrained_optimize()`), has
  *         several components or another topology than those named above, if a landmark is not a

@@ -23,27 +23,26 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * tells what `detect_features()` found, and what decided: figures without unit of the connected component
- * with the largest area among those that are mechanical parts, or among all if none is.
+ * reports on a call of `detect_features()`, with dimensionless statistics of the connected component with
+ * the largest area among those that are mechanical parts, or among all if none is.
  */
 struct Feature_report
 {
   bool has_features = false;               ///< whether an edge was marked.
   std::size_t number_of_feature_edges = 0; ///< edges that were marked.
-  /// the share of the area in faces with a neighbour that goes on in the same plane (turned by less than
-  /// a degree): what planes, cylinders and cones are tessellated with, however coarsely; above 0.8 it is
-  /// a part.
+  /// the share of the area in faces with a coplanar neighbour (a dihedral angle below one degree), as in
+  /// tessellations of planes, cylinders and cones, however coarse; above 0.8 it is a part.
   double flat_share = 0;
-  /// length of the sharp edges (that turn by 40 degrees or more) over the square root of the area; up to
-  /// 0.25 there is too little to tell.
+  /// length of the sharp edges (with a dihedral angle of 40 degrees or more) over the square root of the
+  /// area; up to 0.25 it is not significant.
   double amount_of_sharp_edges = 0;
-  /// the share of the length of sharp edges beside which the surface turns by less than a third of what
-  /// they do; above 0.92 it is a part.
+  /// the share of the length of sharp edges with adjacent edges of less than a third of their dihedral
+  /// angle; above 0.92 it is a part.
   double crisp_share = 0;
-  /// how many of the edges that turn by more than 20 degrees do so by more than 40; above 0.65 it is a
+  /// the share of edges with a dihedral angle above 40 degrees among those above 20; above 0.65 it is a
   /// part, above 0.4 too if `turned_share` is below 0.25.
   double sharp_share = 0;
-  /// how many of all edges turn by more than 20 degrees.
+  /// the share of edges with a dihedral angle above 20 degrees.
   double turned_share = 0;
 };
 
@@ -52,15 +51,15 @@ struct Feature_report
  *
  * marks the feature edges of a surface: the sharp edges of mechanical parts.
  *
- * A mechanical part is made of planes and strips, or its edges are either sharp or hardly turned at all, and
- * sharp edges are lines with smooth ground on both sides; on a scan, an organic shape or a coarse mesh of one, edges turn by all
- * angles, and sharp ones lie among others that are nearly as sharp. Each connected component is judged
- * by itself, by the shares that `Feature_report` holds. Of a part all edges are features at which the
- * surface turns by 40 degrees or more, but for folds: those that turn by more than 120 degrees and have
- * a face that is turned against the sum of the normals at its vertices.
+ * A mechanical part consists of planes and strips, or its edges are either sharp or nearly flat, and sharp
+ * edges form lines between smooth regions; on a scan, an organic shape or a coarse mesh of one, dihedral
+ * angles have all values, and sharp edges lie among others that are nearly as sharp. Each connected
+ * component is classified separately, by the shares that `Feature_report` holds. The features of a part are
+ * all edges with a dihedral angle of 40 degrees or more, except for folds: those above 120 degrees with a
+ * face that is inverted with respect to the sum of the normals at its vertices.
  *
  * `CGAL::reference_constrained_optimize()` calls it for the reference unless its parameter
- * `detect_features` is `false` or the caller constrains edges.
+ * `detect_features` is `false` or the user constrains edges.
  *
  * \tparam FaceGraph a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles and quads
  * \tparam EdgeIsConstrainedMap a model of `WritablePropertyMap` with the edge descriptor of `FaceGraph`
@@ -71,7 +70,7 @@ struct Feature_report
  * \param edge_is_constrained_map receives `true` for every feature edge; other edges are not written.
  * \param np the parameter `vertex_point_map`
  *
- * \return what was found.
+ * \return the classification and its statistics.
  *
  * \throws Invalid_input if the mesh is empty, not manifold, without area, or has a coordinate that is not
  *         finite.
@@ -86,15 +85,15 @@ Feature_report detect_features(const FaceGraph& mesh,
   typedef boost::graph_traits<FaceGraph> Graph_traits;
   const internal::Mesh_copy copy = internal::read_measured_mesh(mesh, np, "mesh");
   const internal::Reference_surface surface(copy);
-  const internal::Detected_features features = internal::Feature_detection(surface).take();
+  const internal::Detected_features features = internal::Feature_detection(surface).result();
   const std::vector<char> is_feature =
     internal::features_of_polygons(copy.mesh, surface, features.is_feature);
   Feature_report report;
-  report.flat_share = features.evidence.flat_share();
-  report.amount_of_sharp_edges = features.evidence.amount();
-  report.crisp_share = features.evidence.crisp_share();
-  report.sharp_share = features.evidence.sharp_share();
-  report.turned_share = features.evidence.turned_share();
+  report.flat_share = features.statistics.flat_share();
+  report.amount_of_sharp_edges = features.statistics.amount();
+  report.crisp_share = features.statistics.crisp_share();
+  report.sharp_share = features.statistics.sharp_share();
+  report.turned_share = features.statistics.turned_share();
   int f = 0;
   for(const typename Graph_traits::face_descriptor face : faces(mesh))
   {

@@ -23,9 +23,8 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * is the number of vertices above which the time of a factorization is no yardstick any more: fill
- * and memory traffic grow faster than the mesh, so that a method seems fast. Reports leave it out
- * there.
+ * is the number of vertices above which running times are not reported in units of a factorization: fill-in
+ * and memory traffic grow faster than the mesh, so that a method would seem fast.
  */
 constexpr std::size_t factorization_time_vertex_limit = 200000;
 

@@ -73,8 +73,8 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
 
 namespace internal {
 
-// A list of ours derives from several lists of CGAL's, so that CGAL's look-up functions could not
-// deduce which one is meant: hand them the outermost.
+// A list of this package derives from several lists of CGAL, so that template deduction in CGAL's look-up
+// functions is ambiguous: this returns the outermost.
 template <typename T, typename Tag, typename Base>
 const CGAL::Named_function_parameters<T, Tag, Base>&
 cgal_parameters(const Named_parameters<T, Tag, Base>& np)
@@ -108,11 +108,11 @@ namespace parameters {
 
 /// starts a list with \f$ \epsilon_d \f$, the largest cost of a face in a patch's cone proxy.
 CGAL_RCO_ADD_NAMED_PARAMETER(developability_threshold)
-/// starts a list with the relative decrease per iteration below which iterations come to rest.
+/// starts a list with the relative decrease of the energy below which the optimization stops.
 CGAL_RCO_ADD_NAMED_PARAMETER(energy_tolerance)
-/// starts a list with how far mesh and reference may be apart, a length.
+/// starts a list with the largest distance between mesh and reference, a length.
 CGAL_RCO_ADD_NAMED_PARAMETER(drift_bound)
-/// starts a list with whether patches are optimized directly on the reference where they can be.
+/// starts a list with whether patches are optimized directly on the reference.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_on_surface_steps)
 /// starts a list with whether a last stage raises the smallest angles.
 CGAL_RCO_ADD_NAMED_PARAMETER(use_finishing_stage)

@@ -16,10 +16,10 @@
 #include <CGAL/Reference_constrained_optimization/internal/reading/reference_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
-#include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 #include <CGAL/Reference_constrained_optimization/internal/stages/optimize_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
-#include <CGAL/Reference_constrained_optimization/internal/writing/mending.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/Defect_repair.h>
 #include <CGAL/Reference_constrained_optimization/internal/writing/write_back.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
@@ -42,10 +42,10 @@ template <typename PolygonMesh,
           typename ReferenceMesh,
           typename NamedParameters,
           typename NamedParametersReference>
-bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
-                      [[maybe_unused]] const ReferenceMesh& reference,
-                      const NamedParameters&,
-                      const NamedParametersReference&)
+bool are_same_object([[maybe_unused]] const PolygonMesh& mesh,
+                     [[maybe_unused]] const ReferenceMesh& reference,
+                     const NamedParameters&,
+                     const NamedParametersReference&)
 {
   if constexpr(std::is_same<PolygonMesh, ReferenceMesh>::value &&
                parameters::is_default_parameter<NamedParameters,
@@ -57,25 +57,25 @@ bool is_own_reference([[maybe_unused]] const PolygonMesh& mesh,
     return false;
 }
 
-// Takes the positions of the vertices that may move to where the caller gets them.
-inline void round_to_caller(const Frame& frame, Optimization_state& state)
+// Rounds the positions of free vertices to the user's coordinates.
+inline void round_to_user_coordinates(const Frame& frame, Optimization_state& state)
 {
   for(std::size_t v = 0; v < state.vertices.size(); ++v)
     if(state.is_free[v])
-      state.vertices[v].position = frame(frame.to_caller(state.vertices[v].position));
+      state.vertices[v].position = frame(frame.to_user(state.vertices[v].position));
 }
 
-// how far mesh and reference are apart, in the points that the drift guard looks at
+// the distance between mesh and reference at the samples of the shape bound
 template <typename ConcurrencyTag>
 double drift_of(const Optimization_state& state, double bound)
 {
-  Drift_guard guard;
-  guard.initialize<ConcurrencyTag>(state, bound, true, Drift_barrier(1));
-  return guard.initial_drift();
+  Shape_bound shape_bound;
+  shape_bound.initialize<ConcurrencyTag>(state, bound, true, Drift_barrier(1));
+  return shape_bound.initial_drift();
 }
 
-// What `optimize()` does; throws Interrupted if it is cut short before the mesh is on the reference, and
-// leaves the mesh as it is then.
+// Implementation of `optimize()`; throws Interrupted, and leaves the mesh unchanged, if it is interrupted
+// before the mesh is on the reference.
 template <typename ConcurrencyTag,
           typename PolygonMesh,
           typename ReferenceMesh,
@@ -106,21 +106,22 @@ void optimize(const FaceRange& range,
   interruption.check();
   Mesh_copy copy = read_face_graph<ConcurrencyTag>(mesh, vpm, "mesh");
   interruption.check();
-  const bool is_own = is_own_reference(mesh, reference, np, np_reference);
-  Mesh_copy other =
-    is_own ? Mesh_copy() : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
-  const Mesh_copy& reference_copy = is_own ? copy : other;
+  const bool is_self_reference = are_same_object(mesh, reference, np, np_reference);
+  Mesh_copy other = is_self_reference
+                      ? Mesh_copy()
+                      : read_face_graph<ConcurrencyTag>(reference, reference_vpm, "reference");
+  const Mesh_copy& reference_copy = is_self_reference ? copy : other;
   const Frame frame(reference_copy);
   const double unit = frame.unit(), distance_of_origin = frame.distance_of_origin();
-  frame.take(copy);
-  frame.take(other);
+  frame.transform(copy);
+  frame.transform(other);
   Reference_surface surface(reference_copy, distance_of_origin);
   const auto point = [&](int v) -> const Vector_3& { return copy.points[v]; };
   if(!has_area(copy.mesh, point, distance_of_origin))
     throw Invalid_input("mesh: every face has zero area");
   check_location_map(surface, np);
   interruption.check();
-  // energies are told of lengths as the caller knows them
+  // energies get lengths in the user's units
   const Mesh_energy_context context(
     mesh, vpm,
     Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
@@ -135,16 +136,16 @@ void optimize(const FaceRange& range,
   state.stencils = Stencil_set(energy, context, frame);
   Constraints constraints = read_constraints(mesh, np, copy.mesh);
   constrain_outside(copy.mesh, is_in_range, constraints);
-  // a copy of the mesh is no other reference
-  const bool is_same =
-    is_own || (copy.points == other.points && copy.mesh.face_begin == other.mesh.face_begin &&
-               copy.mesh.corner_vertex == other.mesh.corner_vertex);
+  // a copy of the mesh counts as the mesh itself
+  const bool is_same = is_self_reference || (copy.points == other.points &&
+                                             copy.mesh.face_begin == other.mesh.face_begin &&
+                                             copy.mesh.corner_vertex == other.mesh.corner_vertex);
   constexpr bool has_reference_lines =
     !parameters::is_default_parameter<NamedParametersReference,
                                       CGAL::internal_np::edge_is_constrained_t>::value;
   Detected_features features;
   if(loop_parameters.detect_features && !has_reference_lines)
-    features = Feature_detection(surface).take();
+    features = Feature_detection(surface).result();
   interruption.check();
   if(features.number_of_edges > 0)
     constrain(is_same ? features_of_polygons(copy.mesh, surface, features.is_feature)
@@ -153,21 +154,21 @@ void optimize(const FaceRange& range,
   if(!features.is_mechanical.empty() && is_same)
     constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
-  place_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption,
-                                     distance_of_origin);
+  locate_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption,
+                                      distance_of_origin);
   check_distances(copy.points, state, unit);
   state.is_mechanical = std::move(features.is_mechanical);
-  state.bounds_turn = faces_on(state, state.is_mechanical);
-  if(!state.bounds_turn.empty())
+  state.bounds_normal_deviation = faces_on(state, state.is_mechanical);
+  if(!state.bounds_normal_deviation.empty())
   {
     state.is_smooth = smooth_edges(state);
     const double largest_part = 0.008; // of the volume
     if(!copy.mesh.has_border())
-      state.largest_volume_change = largest_part * std::abs(volume_of_parts(state));
+      state.largest_volume_change = largest_part * std::abs(volume_of_mechanical_parts(state));
   }
-  // nothing of R would be closest to such a mesh
-  const auto placed = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
-  if(!has_area(copy.mesh, placed, distance_of_origin))
+  // closest points of such a mesh are undefined
+  const auto located = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
+  if(!has_area(copy.mesh, located, distance_of_origin))
     throw Invalid_input("mesh: every face has zero area when its vertices lie on the reference");
   if(loop_parameters.relax_constraints || result.number_of_feature_edges > 0)
   {
@@ -179,12 +180,12 @@ void optimize(const FaceRange& range,
                      rounding_of(copy.mesh, point, distance_of_origin), result);
   }
   for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
-    if(state.has_face_that_counts(v))
+    if(state.has_optimized_face(v))
       result.largest_initial_distance =
         (std::max)(result.largest_initial_distance,
                    unit * (state.vertices[v].on_reference.position - copy.points[v]).norm());
-  round_to_caller(frame, state);
-  const std::vector<Placed_vertex> start_vertices = state.vertices;
+  round_to_user_coordinates(frame, state);
+  const std::vector<Located_vertex> start_vertices = state.vertices;
   result.times.setup = seconds_since(start);
 
   const auto densities = element_densities(energy);
@@ -201,31 +202,31 @@ void optimize(const FaceRange& range,
   Loop_parameters framed_parameters = loop_parameters;
   framed_parameters.drift_bound /= unit;
   const auto finish = [&]() {
-    round_to_caller(frame, state);
+    round_to_user_coordinates(frame, state);
     Global_measure final = measure_all();
     if(!loop_parameters.accepts_all)
     {
-      Mending<ConcurrencyTag> mending(state, start_vertices);
+      Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices);
       const auto is_worse = [&]() {
         return final.defects() > initial.defects() ||
                (final.defects() == initial.defects() && final.energy > initial.energy) ||
-               (mending.has_mended() &&
-                (mending.has_lowered_angles() ||
-                 result.drift > (std::max)(Drift_barrier::last_part * result.drift_bound,
+               (defect_repair.has_restored_vertices() &&
+                (defect_repair.has_lowered_angles() ||
+                 result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
                                            result.initial_drift)));
       };
-      const auto mend = [&]() {
-        mending.run();
-        if(!mending.has_mended())
+      const auto run_repair = [&]() {
+        defect_repair.run();
+        if(!defect_repair.has_restored_vertices())
           return;
         final = measure_all();
         if(std::isfinite(result.drift_bound))
           result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
       };
-      mend();
-      // next to what has returned faces may be stretched
-      while(is_worse() && mending.grow(densities))
-        mend();
+      run_repair();
+      // faces next to restored vertices may be stretched
+      while(is_worse() && defect_repair.enlarge(densities))
+        run_repair();
     }
     write_points(mesh, vpm, copy.points, state, frame);
     write_locations(mesh, reference, np, state);
@@ -253,9 +254,9 @@ void optimize(const FaceRange& range,
   finish();
 }
 
-// What `CGAL::reference_constrained_optimize()` does once its numbers are read: `loop_parameters`
-// also has switches that the public function does not offer. Of the named parameters the maps and
-// the visitor are used.
+// Implementation of `CGAL::reference_constrained_optimize()` with parameters that were read:
+// `loop_parameters` also has options that the public function does not offer. Of the named parameters only
+// the maps and the visitor are used.
 template <typename ConcurrencyTag,
           typename PolygonMesh,
           typename ReferenceMesh,

@@ -42,7 +42,7 @@ inline double checked_positive(double value, const char* name)
 template <typename Integer>
 Integer checked_count(double value, const char* name)
 {
-  // the largest may not have an equal of its own: it is not reached
+  // the largest value itself may not be representable: it is excluded
   const double end = std::ldexp(1., std::numeric_limits<Integer>::digits);
   if(!(value >= 0) || !(value < end) || value != std::floor(value))
     throw Invalid_input(std::string(name) +

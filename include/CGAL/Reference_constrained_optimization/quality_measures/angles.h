@@ -17,7 +17,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds figures of the smallest angles of faces, in degrees. Every face counts once.
+ * holds statistics of the smallest angles of faces, in degrees. Every face counts once.
  */
 struct Angle_statistics
 {
@@ -34,7 +34,7 @@ struct Angle_statistics
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds figures of the angles at all corners of all faces, in degrees.
+ * holds statistics of the angles at all corners of all faces, in degrees.
  */
 struct Corner_angle_statistics
 {
@@ -47,7 +47,7 @@ struct Corner_angle_statistics
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * computes the smallest angle of every face and returns the figures of it.
+ * computes statistics of the smallest angle of every face.
  *
  * An angle is measured between the two sides at a corner and lies between 0 and 180 degrees. A
  * degenerate triangle counts as 0 degrees.
@@ -98,7 +98,7 @@ Angle_statistics angle_statistics(const FaceGraph& mesh,
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * computes the angle at every corner of every face and returns the figures of it.
+ * computes statistics of the angles at all corners of all faces.
  *
  * An angle is measured between the two sides at a corner and lies between 0 and 180 degrees, at
  * corners that are not convex, too (`number_of_nonconvex_quads()` counts those).

@@ -43,11 +43,11 @@ struct Certified_drift
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * bounds how far a mesh and its reference are apart, over all points of both surfaces, with
+ * bounds the distance between a mesh and its reference, over all points of both surfaces, with
  * `CGAL::Polygon_mesh_processing::bounded_error_Hausdorff_distance()`.
  *
- * It proves what `drift()` samples, and takes much longer. This function has a header of its own,
- * which `quality_measures.h` does not include.
+ * In contrast to `drift()`, which measures samples, it gives a guaranteed bound, and takes much longer.
+ * This function has a header of its own, which `quality_measures.h` does not include.
  *
  * \param mesh the mesh
  * \param reference the reference

@@ -24,14 +24,14 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * says how far vertices are from a reference, in units of length of the points.
+ * holds the distances of vertices from a reference, in units of length of the points.
  */
 struct Distance_to_reference
 {
   double maximum = 0;                 ///< largest distance of a vertex.
   std::size_t vertex = 0;             ///< position of that vertex in `vertices(mesh)`.
   std::size_t number_of_vertices = 0; ///< vertices measured.
-  /// what rounding explains: \f$ 10^{-12} \f$ of the diagonal of the reference's bounding box plus
+  /// the effect of rounding: \f$ 10^{-12} \f$ of the diagonal of the reference's bounding box plus
   /// four units in the last place of the largest coordinate, in the points' number type.
   double tolerance = 0;
 
@@ -42,7 +42,7 @@ struct Distance_to_reference
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * is the vertex filter that takes every vertex.
+ * is the vertex filter that accepts every vertex.
  */
 struct Every_vertex
 {
@@ -103,7 +103,7 @@ distance_to_reference(const FaceGraph& mesh,
     ++result.number_of_vertices;
     const internal::Vector_3& p = copy.points[i];
     double distance = (surface.closest_from_vertex(p, i).position - p).norm();
-    // of a needle only the sides are found to all digits: another face may be closer
+    // closest points in a needle are accurate on its edges only: another face may be closer
     if(distance > result.tolerance && distance < 1e-8 * surface.diagonal())
       for(const internal::Surface_point& s : surface.all_within(p, distance))
         distance = (std::min)(distance, (s.position - p).norm());

@@ -25,7 +25,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds figures of \f$ (\|J\|_F^2 + \|J^{-1}\|_F^2) / 2 \f$ over the triangles of a map between two
+ * holds statistics of \f$ (\|J\|_F^2 + \|J^{-1}\|_F^2) / 2 \f$ over the triangles of a map between two
  * meshes: 2 at an isometry, without unit.
  */
 struct Distortion_statistics
@@ -41,8 +41,8 @@ struct Distortion_statistics
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * computes how much the piecewise linear map from one mesh to another of the same connectivity
- * distorts, and returns the figures of it.
+ * computes statistics of the distortion of the piecewise linear map from one mesh to another of the same
+ * connectivity.
  *
  * For every triangle, \f$ J \f$ is the Jacobian of the affine map from the source's triangle to the
  * mesh's, after the source was scaled to the area of the other; its value is

@@ -19,7 +19,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds how far samples of one surface are from another, in units of length of the points.
+ * holds the distances of samples of one surface from another, in units of length of the points.
  */
 struct Directed_drift
 {
@@ -31,9 +31,9 @@ struct Directed_drift
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds how far a mesh and its reference are apart, both ways. Distances are in units of length of
- * the points, except where a name starts with `relative`: those are divided by the mean edge length
- * of the reference.
+ * holds the distances between a mesh and its reference in both directions. Distances are in units of length
+ * of the points, except where a name starts with `relative`: those are divided by the mean edge length of
+ * the reference.
  */
 struct Drift
 {
@@ -78,9 +78,9 @@ inline Directed_drift directed_drift(const Reference_surface& from, const Refere
   const std::vector<Vector_3>& points = from.points();
   Directed_drift result;
   double largest = 0, sum = 0;
-  // The same face of the other surface is likely to be near, as where one came from the other; and so is
-  // what was close to the sample before.
-  const double rounding = 1e-12 * to.diagonal(); // points of needles are not known any better
+  // The face of the other surface with the same index is likely to be near, and so is the closest face of
+  // the sample before.
+  const double rounding = 1e-12 * to.diagonal(); // closest points in needles are not more accurate
   Surface_point last;
   const auto sample = [&](const Vector_3& p) {
     last = last.face < 0 ? to.closest(p) : to.closest_near(p, last.face, rounding);
@@ -126,8 +126,8 @@ inline Directed_drift directed_drift(const Reference_surface& from, const Refere
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * measures how far a mesh and its reference are apart. Vertices of an optimized mesh are on the
- * reference; its faces need not be.
+ * measures the distance between a mesh and its reference in both directions. Vertices of an optimized mesh
+ * are on the reference; its faces need not be.
  *
  * On every triangle of both surfaces (quads are split by their shorter diagonal) these points are
  * sampled: the vertices, the midpoints of the edges, the centroid and the three points with

@@ -5,7 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_FEATURE_DEVIATION_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_QUALITY_MEASURES_FEATURE_DEVIATION_H
 
-#include <CGAL/Reference_constrained_optimization/internal/mesh/edge_turn.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/dihedral_angles.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
 
@@ -22,9 +22,9 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * says what became of the sharp edges of a mesh whose vertices were moved. An edge is sharp if the
- * surface turns by more than 40 degrees there; it has a counterpart where the other mesh has an edge at which it
- * turns by more than 20 degrees, no further away than 0.05 local edge lengths.
+ * holds how well the sharp edges of a mesh are preserved when its vertices are moved. An edge is sharp if
+ * its dihedral angle exceeds 40 degrees; it has a counterpart where the other mesh has an edge with a
+ * dihedral angle above 20 degrees, no further away than 0.05 local edge lengths.
  */
 struct Feature_deviation
 {
@@ -36,15 +36,15 @@ struct Feature_deviation
   double added = 0;
   double length_before = 0; ///< length of the sharp edges before, in units of length of the points.
   double length_after = 0;  ///< length of the sharp edges after.
-  /// largest distance of a point of the sharp edges before from the edges after at which the surface turns by
-  /// more than 20 degrees, in units of length; infinite if there are none.
+  /// largest distance of a point of the sharp edges before from the edges after with a dihedral angle above
+  /// 20 degrees, in units of length; infinite if there are none.
   double before_to_after = 0;
   double after_to_before = 0; ///< the same the other way.
 };
 
 namespace internal {
 
-// The edges at which a mesh turns, and how far points are from them.
+// The edges of a mesh with large dihedral angles, and distances of points from them.
 class Feature_lines
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
@@ -54,7 +54,7 @@ class Feature_lines
 public:
   explicit Feature_lines(const Mesh_copy& copy)
     : m_copy(copy),
-      m_turns(edge_turns(copy.mesh, copy.points)),
+      m_dihedral_angles(dihedral_angles(copy.mesh, copy.points)),
       m_local_length(median_edge_lengths())
   {
     for_each_edge(visible, [&](const Vector_3& a, const Vector_3& b, double) {
@@ -72,7 +72,7 @@ public:
     double length = 0, covered = 0, largest_distance = 0;
   };
 
-  // how much of the sharp edges is where the other mesh turns visibly
+  // the length of the sharp edges along which the other mesh has visible edges
   Coverage covered_by(const Feature_lines& other) const
   {
     Coverage result;
@@ -103,13 +103,13 @@ private:
     return std::sqrt(m_tree.squared_distance(kernel_point(p)));
   }
 
-  // visit(a, b, local edge length) for each edge that turns by more than some degrees
+  // visit(a, b, local edge length) for each edge with a dihedral angle above some degrees
   template <typename Visit>
   void for_each_edge(double degrees, const Visit& visit) const
   {
     const Indexed_mesh& mesh = m_copy.mesh;
     for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(mesh.opposite[c] > c && m_turns[c] > degrees)
+      if(mesh.opposite[c] > c && m_dihedral_angles[c] > degrees)
       {
         const int s = mesh.source(c), t = mesh.target(c);
         const Vector_3 &a = m_copy.points[s], &b = m_copy.points[t];
@@ -128,10 +128,10 @@ private:
       lengths.clear();
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
       {
-        const int c = mesh.vertex_corners[k], arriving = mesh.previous(c);
+        const int c = mesh.vertex_corners[k], incoming = mesh.previous(c);
         lengths.push_back((m_copy.points[mesh.target(c)] - m_copy.points[v]).norm());
-        if(mesh.opposite[arriving] < 0) // no face has this edge as one that leaves
-          lengths.push_back((m_copy.points[mesh.source(arriving)] - m_copy.points[v]).norm());
+        if(mesh.opposite[incoming] < 0) // no face has this edge as an outgoing one
+          lengths.push_back((m_copy.points[mesh.source(incoming)] - m_copy.points[v]).norm());
       }
       if(lengths.empty())
         continue;
@@ -143,7 +143,7 @@ private:
   }
 
   const Mesh_copy& m_copy;
-  std::vector<double> m_turns; // per corner
+  std::vector<double> m_dihedral_angles; // per corner
   std::vector<double> m_local_length;
   std::vector<Kernel::Segment_3> m_segments;
   Segment_tree<Kernel, Segment_iterator> m_tree;
@@ -154,11 +154,11 @@ private:
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * measures how much of the sharp edges of a mesh another one has kept, and how much it has that were not
- * there. The two need not have the same connectivity.
+ * measures which part of the sharp edges of a mesh is preserved in another one, and the length of those
+ * that are new. The two need not have the same connectivity.
  *
- * An edge turns by the angle between the normals of its two faces; edges at borders and at faces without
- * area do not turn. Edges are sampled at the middles of eight parts of equal length; the local edge
+ * The dihedral angle of an edge is the angle between the normals of its two faces; it is 0 at borders and
+ * at faces without area. Edges are sampled at the middles of eight parts of equal length; the local edge
  * length is the mean over the ends of an edge of the median length of the edges there.
  *
  * \tparam FaceGraphBefore a model of `FaceListGraph` and `HalfedgeListGraph`, with triangles or quads

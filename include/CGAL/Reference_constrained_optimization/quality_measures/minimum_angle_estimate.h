@@ -26,7 +26,7 @@ struct Minimum_angle_estimate
   /// smallest \f$ \min(S/d, 90^\circ - S/(2d)) \f$ over the vertices that may move, `S` being the
   /// sum of the angles at the vertex and `d` its number of faces; 180 if there is none.
   double at_free_vertices = 180;
-  /// smallest angle of the faces whose vertices are all fixed, a bound for good; 180 if there is
+  /// smallest angle of the faces whose vertices are all fixed, a strict bound; 180 if there is
   /// none.
   double of_fixed_faces = 180;
 
@@ -41,9 +41,8 @@ struct Minimum_angle_estimate
  * of the mesh as it is.
  *
  * If `d` triangles share an angle sum `S` evenly at a vertex, each has `S/d` there and at most half
- * of what is left to 180 degrees at its smaller other corner. Where the ground is curved the angle
- * sum changes as the vertex moves, so that the estimate can be exceeded. Vertices at the border are
- * fixed.
+ * of what is left to 180 degrees at its smaller other corner. On a curved surface the angle sum changes as
+ * the vertex moves, so that the estimate can be exceeded. Vertices at the border are fixed.
  *
  * \param mesh a triangle mesh
  * \param np the parameter `vertex_point_map` of `mesh`, and `vertex_is_constrained_map` and
@@ -76,7 +75,7 @@ minimum_angle_estimate(const FaceGraph& mesh,
   for(int v = 0; v < m.number_of_vertices(); ++v)
     if(is_free[v])
       result.at_free_vertices =
-        (std::min)(result.at_free_vertices, internal::shared_angle(m, point, v));
+        (std::min)(result.at_free_vertices, internal::vertex_angle_bound(m, point, v));
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * counts what is turned over. Degenerate faces count in neither.
+ * counts inverted faces and folded edges. Degenerate faces count in neither.
  */
 struct Orientation_defects
 {
@@ -34,13 +34,12 @@ struct Orientation_defects
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * counts the faces that are turned against the reference and the edges that are folded.
+ * counts the faces that are inverted with respect to the reference and the edges that are folded.
  *
  * The reference's normal at a vertex of the mesh is interpolated linearly from the area-weighted
  * unit normals at the vertices of the reference's triangle in which the vertex' closest point lies;
- * where the reference passes through a vertex more than once, on the sheet along which the vertex'
- * faces lie, facing as they do.
- * Components of the reference that are oriented against the mesh are turned round first.
+ * where several sheets of the reference pass through a vertex, that of the sheet which agrees best with the
+ * faces at the vertex. Components of the reference that are oriented against the mesh are reversed first.
  *
  * \param mesh the mesh
  * \param reference the reference
@@ -79,8 +78,8 @@ orientation_defects(const FaceGraph& mesh,
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
  * counts the quads that are not convex as seen along the reference's normals: at one corner at
- * least, the triangle of the corner and its two neighbours in the face is turned against the sum of
- * the reference's normals at these three vertices.
+ * least, the triangle of the corner and its two neighbours in the face is inverted with respect to the sum
+ * of the reference's normals at these three vertices.
  *
  * Parameters are those of `orientation_defects()`. Triangles are skipped.
  */

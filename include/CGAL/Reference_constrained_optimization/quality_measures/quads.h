@@ -17,7 +17,7 @@ namespace Reference_constrained_optimization {
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds figures of edge lengths.
+ * holds statistics of edge lengths.
  */
 struct Edge_statistics
 {
@@ -30,8 +30,8 @@ struct Edge_statistics
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * holds figures of the planarity of quads: the distance between the lines through the two diagonals
- * over the diagonals' mean length, without unit; 0 if the quad is planar.
+ * holds statistics of the planarity of quads: the distance between the lines through the two diagonals over
+ * the diagonals' mean length, without unit; 0 if the quad is planar.
  */
 struct Planarity
 {
@@ -43,7 +43,7 @@ struct Planarity
 /*!
  * \ingroup PkgReferenceConstrainedOptimizationRef
  *
- * computes the figures of the lengths of a mesh's edges. Every edge counts once.
+ * computes statistics of the edge lengths of a mesh. Every edge counts once.
  *
  * \param mesh the mesh
  * \param np the parameter `vertex_point_map` of `mesh`

@@ -23,17 +23,17 @@ namespace internal {
 
 // A mover proposes new positions of a patch's free vertices. It provides
 //   bool propose(const Patch&, const Patch_samples&, const Density&);
-// which says whether there is anything to try;
-//   bool place(const Patch&, int v, double t, Placed_vertex&);
-// which puts local vertex v at part t in (0, 1] of its way, and says whether it could;
+// which returns whether there is a proposal;
+//   bool displaced_vertex(const Patch&, int v, double t, Located_vertex&);
+// which moves local vertex v by the fraction t in (0, 1] of its displacement, and returns whether that is
+// possible;
 //   bool propose_again(const Patch&, const Patch_samples&, const std::vector<double>& steps,
 //                     const Density&);
-// which, after a proposal was accepted with the given part of its way for every vertex, and the
-// patch updated accordingly, proposes further ones.
+// which makes a further proposal after one was accepted, with the given fraction of its displacement for
+// every vertex, and the patch was updated.
 //
-// This one goes through the plane: flatten the patch, minimize there in the metric of the surface,
-// map back. A further proposal starts from where the last one ended in the plane, with the metric
-// as it is there.
+// This one uses the plane: it flattens the patch, minimizes in the metric of the surface, and maps back. A
+// further proposal starts from the last accepted positions in the plane, with the metric evaluated there.
 class Flattened_mover
 {
 public:
@@ -60,7 +60,7 @@ public:
     const auto start = std::chrono::steady_clock::now();
     const Indexed_mesh& triangles = patch.triangles();
     m_points.clear();
-    for(const Placed_vertex& p : patch.placed)
+    for(const Located_vertex& p : patch.located)
       m_points.push_back(p.position);
     m_flattening = m_flattener.flatten(triangles, m_points, m_parameters.flattening);
     const bool is_flat = m_flattening.path != Flattening_path::failed;
@@ -72,7 +72,7 @@ public:
 
     check(m_interruption);
     const auto start_of_descent = std::chrono::steady_clock::now();
-    m_problem.carriers = drift_carriers(patch, samples);
+    m_problem.term_triangles = drift_term_triangles(patch, samples);
     m_start_triangle.assign(m_flattening.positions.size(), -1);
     for(int c = 0; c < triangles.number_of_corners(); ++c)
       m_start_triangle[triangles.corner_vertex[c]] = c / 3;
@@ -103,12 +103,12 @@ public:
     return proposes;
   }
 
-  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  bool displaced_vertex(const Patch& patch, int v, double t, Located_vertex& result) const
   {
     const Vector_2& from = m_flattening.positions[v];
     if(patch.slides(v))
       return slide(patch, v,
-                   t * m_slide_scale[v] * m_problem.slide_direction[v].dot(m_target[v] - from),
+                   t * m_sliding_scale[v] * m_problem.sliding_direction[v].dot(m_target[v] - from),
                    m_reference, result);
     const Vector_2 to = from + t * (m_target[v] - from);
     const Planar_location location =
@@ -120,7 +120,10 @@ public:
   const std::vector<Vector_2>& target() const { return m_target; }
   bool overlaps() const { return m_overlaps; }
   double flattening_time() const { return m_flattening_time; }
-  double motion_length(int v) const { return (m_target[v] - m_flattening.positions[v]).norm(); }
+  double displacement_length(int v) const
+  {
+    return (m_target[v] - m_flattening.positions[v]).norm();
+  }
   double optimization_time() const { return m_optimization_time; }
 
 private:
@@ -140,7 +143,7 @@ private:
     m_problem.rest_inverse.clear();
     m_problem.metric.clear();
     m_problem.is_free = patch.is_free;
-    find_slide_directions(patch);
+    find_sliding_directions(patch);
     for(const Element_set::Element& e : patch.elements)
     {
       m_problem.triples.push_back(e.vertices);
@@ -150,8 +153,8 @@ private:
         m_problem.metric.push_back(Eigen::Matrix2d::Identity());
         continue;
       }
-      const Placed_vertex &a = patch.placed[e.vertices[0]], &b = patch.placed[e.vertices[1]],
-                          &c = patch.placed[e.vertices[2]];
+      const Located_vertex &a = patch.located[e.vertices[0]], &b = patch.located[e.vertices[1]],
+                           &c = patch.located[e.vertices[2]];
       m_problem.metric.push_back(surface_metric(
         Planar_problem::edges(u, e.vertices),
         signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
@@ -163,8 +166,8 @@ private:
     m_problem.stencils.collect(patch, motion);
   }
 
-  // How vertices move along R when they move in the plane: the mean of the triangles around them, in
-  // the tangent plane of R.
+  // The derivative of a vertex' position on R by its position in the plane: the mean over the triangles
+  // around it, projected onto the tangent plane of R.
   void find_motions(const Patch& patch, const Patch_samples& samples)
   {
     if(!samples.are_bounded() && patch.stencils.empty())
@@ -180,8 +183,8 @@ private:
       if(!(flat.determinant() > 1e-3 * flat.squaredNorm()))
         continue;
       Tangent_frame edges;
-      edges << patch.placed[v[1]].position - patch.placed[v[0]].position,
-        patch.placed[v[2]].position - patch.placed[v[0]].position;
+      edges << patch.located[v[1]].position - patch.located[v[0]].position,
+        patch.located[v[2]].position - patch.located[v[0]].position;
       const Tangent_frame motion = edges * flat.inverse();
       for(int i = 0; i < 3; ++i)
       {
@@ -191,41 +194,42 @@ private:
     }
     for(int v = 0; v < int(u.size()); ++v)
       if(patch.slides(v))
-        m_motions[v] = m_slide_scale[v] * patch.lines->tangent(patch.placed[v].on_line) *
-                       m_problem.slide_direction[v].transpose();
+        m_motions[v] = m_sliding_scale[v] * patch.lines->tangent(patch.located[v].on_line) *
+                       m_problem.sliding_direction[v].transpose();
       else if(count[v] > 0)
       {
-        const Vector_3 normal = patch.placed[v].normal.normalized();
+        const Vector_3 normal = patch.located[v].normal.normalized();
         m_motions[v] = (m_motions[v] - normal * (normal.transpose() * m_motions[v])) / count[v];
       }
   }
 
   // In the plane a vertex slides in parallel to the line between its two neighbours; one unit there
-  // is m_slide_scale units of length on R, forward if it is positive.
-  void find_slide_directions(const Patch& patch)
+  // is m_sliding_scale units of length on R, forward if it is positive.
+  void find_sliding_directions(const Patch& patch)
   {
     const std::vector<Vector_2>& u = m_flattening.positions;
-    m_problem.slide_direction.clear();
+    m_problem.sliding_direction.clear();
     if(patch.line_neighbours.empty())
       return;
-    m_problem.slide_direction.assign(u.size(), Vector_2::Zero());
-    m_slide_scale.assign(u.size(), 0);
+    m_problem.sliding_direction.assign(u.size(), Vector_2::Zero());
+    m_sliding_scale.assign(u.size(), 0);
     for(int v = 0; v < int(u.size()); ++v)
     {
       if(!patch.slides(v))
         continue;
       const std::array<int, 2>& next_to = patch.line_neighbours[v];
       const Vector_2 flat = u[next_to[1]] - u[next_to[0]];
-      const Vector_3 along = patch.placed[next_to[1]].position - patch.placed[next_to[0]].position;
+      const Vector_3 along =
+        patch.located[next_to[1]].position - patch.located[next_to[0]].position;
       const double length = flat.norm();
       if(!(length > 0))
       {
         m_problem.is_free[v] = 0;
         continue;
       }
-      const Vector_3 forward = patch.lines->tangent(patch.placed[v].on_line);
-      m_problem.slide_direction[v] = flat / length;
-      m_slide_scale[v] = (forward.dot(along) < 0 ? -1 : 1) * along.norm() / length;
+      const Vector_3 forward = patch.lines->tangent(patch.located[v].on_line);
+      m_problem.sliding_direction[v] = flat / length;
+      m_sliding_scale[v] = (forward.dot(along) < 0 ? -1 : 1) * along.norm() / length;
     }
   }
 
@@ -239,7 +243,7 @@ private:
   std::vector<Vector_3> m_points;
   std::vector<Vector_2> m_target;
   std::vector<int> m_start_triangle;
-  std::vector<double> m_slide_scale;
+  std::vector<double> m_sliding_scale;
   std::vector<Tangent_frame> m_motions; // per vertex
   bool m_overlaps = false;
   double m_flattening_time = 0, m_optimization_time = 0;

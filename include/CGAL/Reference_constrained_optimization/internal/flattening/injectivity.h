@@ -18,16 +18,16 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Whether the piecewise linear map of a triangulated disk to the plane is locally injective, exactly:
-// every triangle is positively oriented, and those at an inner vertex go round it once.
+// every triangle is positively oriented, and the winding number of those at an inner vertex is one.
 inline bool is_locally_injective(const Indexed_mesh& triangles, const std::vector<Vector_2>& u)
 {
   typedef CGAL::Exact_predicates_inexact_constructions_kernel Kernel;
   for(const Vector_2& p : u)
     if(!p.allFinite())
       return false;
-  // how often the triangles at a vertex sweep over the direction of the x-axis: from below the axis
-  // to above it by less than half a turn
-  std::vector<int> sweeps(u.size(), 0);
+  // how many triangles at a vertex contain the direction of the x-axis: from below the axis to above it by
+  // less than half a turn
+  std::vector<int> winding_numbers(u.size(), 0);
   for(int t = 0; t < triangles.number_of_faces(); ++t)
   {
     const int* v = &triangles.corner_vertex[3 * t];
@@ -37,11 +37,11 @@ inline bool is_locally_injective(const Indexed_mesh& triangles, const std::vecto
     for(int i = 0; i < 3; ++i)
     {
       const Vector_2 &o = u[v[i]], &a = u[v[(i + 1) % 3]], &b = u[v[(i + 2) % 3]];
-      sweeps[v[i]] += (a(1) < o(1) && b(1) > o(1)) || (a(1) == o(1) && a(0) > o(0));
+      winding_numbers[v[i]] += (a(1) < o(1) && b(1) > o(1)) || (a(1) == o(1) && a(0) > o(0));
     }
   }
   for(std::size_t i = 0; i < u.size(); ++i)
-    if(!triangles.is_border_vertex[i] && sweeps[i] > 1)
+    if(!triangles.is_border_vertex[i] && winding_numbers[i] > 1)
       return false;
   return true;
 }

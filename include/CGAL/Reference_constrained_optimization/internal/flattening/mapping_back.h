@@ -22,14 +22,14 @@ namespace internal {
 inline bool map_to_reference(const Patch& patch,
                              const Planar_location& location,
                              const Reference_surface& reference,
-                             Placed_vertex& result)
+                             Located_vertex& result)
 {
   const Indexed_mesh& triangles = patch.triangles();
-  const Placed_vertex* corner[3];
+  const Located_vertex* corner[3];
   Vector_3 point = Vector_3::Zero(), normal = Vector_3::Zero();
   for(int i = 0; i < 3; ++i)
   {
-    corner[i] = &patch.placed[triangles.corner_vertex[3 * location.triangle + i]];
+    corner[i] = &patch.located[triangles.corner_vertex[3 * location.triangle + i]];
     point += location.barycentric(i) * corner[i]->position;
     normal += location.barycentric(i) * corner[i]->normal;
   }
@@ -39,23 +39,23 @@ inline bool map_to_reference(const Patch& patch,
   const Surface_point& nearest = corner[order[0]]->on_reference;
 
   double best_distance = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const Surface_point& foot) {
-    const double distance = (foot.position - point).norm();
-    if(distance < best_distance && reference.normal(foot).dot(normal) > 0)
+  const auto consider = [&](const Surface_point& projection) {
+    const double distance = (projection.position - point).norm();
+    if(distance < best_distance && reference.normal(projection).dot(normal) > 0)
     {
-      result.on_reference = foot;
+      result.on_reference = projection;
       best_distance = distance;
     }
   };
-  // Descending from a corner ends no further away than the corner is. A foot at a large part of
-  // that distance may be a local minimum that misses a closer part of the sheet.
+  // The local search from a corner ends no further away than the corner is. A distance that is not much
+  // smaller may be a local minimum that misses a closer part of the sheet.
   const auto is_close = [&](const Surface_point& from) {
     return best_distance <= 0.25 * (from.position - point).norm();
   };
   for(int k = 0; k < 3; ++k)
   {
     const Surface_point& from = corner[order[k]]->on_reference;
-    consider(reference.descend(point, from.face));
+    consider(reference.local_closest(point, from.face));
     if(is_close(from))
       break;
   }
@@ -64,9 +64,10 @@ inline bool map_to_reference(const Patch& patch,
     const Surface_point global = std::isfinite(best_distance)
                                    ? reference.closest(point, result.on_reference)
                                    : reference.closest(point);
-    const double reach = 3 * (nearest.position - point).norm() + (global.position - point).norm();
+    const double path_length =
+      3 * (nearest.position - point).norm() + (global.position - point).norm();
     if((global.position - point).norm() < 0.9 * best_distance &&
-       reference.is_reachable(nearest, global, reach))
+       reference.is_reachable(nearest, global, path_length))
       consider(global);
   }
   if(!std::isfinite(best_distance))

@@ -44,27 +44,26 @@ struct Flattening
   double distortion = 0; // area-weighted mean of the symmetric Dirichlet density (4: isometric)
 };
 
-// Which ways to flatten may be taken; the paper's is the second alone.
+// Which parameterizations are used; the paper's is the second alone.
 struct Flattening_parameters
 {
   bool use_conformal = true;
-  bool use_conformal_of_cgal = false; // CGAL's solver for it, to compare with
-  bool use_mean_value = true;         // on a convex border, before equal weights are
-  double conformal_limit = 20;        // distortion of a conformal map beyond which it is no start
-  // A conformal map shrinks the ends of long parts, and what is found in a shrunken place is not
-  // accurate: descent follows, until the distortion is below this.
-  double nearly_isometric = 4.05;
+  bool use_conformal_of_cgal = false;       // by CGAL's solver, for comparison
+  bool use_mean_value = true;               // on a convex border, before equal weights are tried
+  double largest_conformal_distortion = 20; // distortion beyond which a conformal map is not used
+  // A conformal map shrinks the ends of long patches, where results are then inaccurate: the distortion is
+  // minimized until it is below this.
+  double target_distortion = 4.05;
   int maximum_descent_steps = 25;
-  double descent_tolerance = 1e-2; // a relative decrease that ends the descent
-  // the same as long as the distortion is above `far_distortion`: folds open up slowly at first
+  double descent_tolerance = 1e-2; // the relative decrease that ends the minimization
+  // the same while the distortion is above `far_distortion`: folds open slowly at first
   double far_tolerance = 1e-6;
   double far_distortion = 5;
 };
 
 // Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
-// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border
-// may cross itself: positions are found again by walking within a sheet, for which that does not
-// matter.
+// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border may
+// cross itself: points are located by walking within a sheet, which is not affected.
 class Patch_flattener
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
@@ -95,14 +94,15 @@ public:
       parameters.use_conformal &&
       (parameters.use_conformal_of_cgal
          ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
-         : m_conformal.flatten(triangles, m_shapes, ends(points), flattening.positions)) &&
+         : m_conformal.flatten(triangles, m_shapes, extreme_vertices(points),
+                               flattening.positions)) &&
       is_usable(triangles, flattening.positions);
     check(m_interruption);
     if(is_conformal)
       flattening.distortion = distortion(triangles, flattening.positions);
     const bool is_usable_start =
-      (is_conformal && flattening.distortion < parameters.conformal_limit) ||
-      (parameters.use_mean_value && !m_has_empty_edge && // its weights are not defined there
+      (is_conformal && flattening.distortion < parameters.largest_conformal_distortion) ||
+      (parameters.use_mean_value && !m_has_degenerate_edge && // its weights are not defined there
        run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
            triangles, points, flattening) &&
        is_usable(triangles, flattening.positions)) ||
@@ -112,14 +112,15 @@ public:
     if(!is_usable_start)
       return flattening;
     check(m_interruption);
-    flattening.path = is_conformal && flattening.distortion < parameters.conformal_limit
-                        ? Flattening_path::conformal
-                        : Flattening_path::convex_border;
+    flattening.path =
+      is_conformal && flattening.distortion < parameters.largest_conformal_distortion
+        ? Flattening_path::conformal
+        : Flattening_path::convex_border;
     if(flattening.path == Flattening_path::convex_border ||
-       flattening.distortion > parameters.nearly_isometric)
+       flattening.distortion > parameters.target_distortion)
     {
       const std::vector<Vector_2> start = flattening.positions;
-      descend(triangles, flattening.positions, parameters);
+      minimize_distortion(triangles, flattening.positions, parameters);
       if(!is_locally_injective(triangles, flattening.positions))
         flattening.positions = start;
       flattening.distortion = distortion(triangles, flattening.positions);
@@ -128,7 +129,7 @@ public:
   }
 
 private:
-  // shapes of the triangles in space; those without area get one, so that they can be descended to
+  // shapes of the triangles in space; degenerate ones are given an area, so that they can be approached
   void compute_shapes(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
     m_shapes.clear();
@@ -143,8 +144,8 @@ private:
       shortest = (std::min)({shortest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
     }
     const double mean_length = std::sqrt(m_area / triangles.number_of_faces());
-    // when it is moved to the origin, rounding may leave nothing of it
-    m_has_empty_edge = !(shortest > 1e-9 * mean_length);
+    // it may vanish by rounding when the patch is moved to the origin
+    m_has_degenerate_edge = !(shortest > 1e-9 * mean_length);
     for(Eigen::Matrix2d& s : m_shapes)
     {
       s(0, 0) = (std::max)(s(0, 0), 0.01 * mean_length);
@@ -153,7 +154,7 @@ private:
   }
 
   // the two ends of the patch along the longest side of its bounding box
-  static std::array<int, 2> ends(const std::vector<Vector_3>& points)
+  static std::array<int, 2> extreme_vertices(const std::vector<Vector_3>& points)
   {
     Vector_3 low = points.front(), high = low;
     for(const Vector_3& p : points)
@@ -175,7 +176,7 @@ private:
   }
 
   // CGAL's mesh of the patch, moved to the origin and scaled to unit area. False, and no mesh, if two
-  // edges join the same vertices, as diagonals of quads may do: nothing of this is injective in the plane.
+  // edges join the same vertices, as diagonals of quads may do: such a patch has no injective flattening.
   bool build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
     m_mesh.reserve(Surface_mesh::size_type(points.size()),
@@ -200,7 +201,7 @@ private:
     return true;
   }
 
-  // CGAL's mesh is built when the first of its parameterizers asks for it
+  // CGAL's mesh is built on first use by one of its parameterizers
   template <typename Parameterizer>
   bool run(const Parameterizer& parameterizer,
            const Indexed_mesh& triangles,
@@ -228,8 +229,8 @@ private:
     return error == SMP::OK;
   }
 
-  // Checks injectivity and scales to the area of the patch. A conformal map may shrink the ends of
-  // long parts to nothing: such triangles are injective, but of no use to work in.
+  // Checks injectivity and scales to the area of the patch. A conformal map may shrink the ends of long
+  // patches to nothing: such maps are injective, but useless.
   bool is_usable(const Indexed_mesh& triangles, std::vector<Vector_2>& u) const
   {
     if(!is_locally_injective(triangles, u))
@@ -245,9 +246,9 @@ private:
     return true;
   }
 
-  void descend(const Indexed_mesh& triangles,
-               std::vector<Vector_2>& u,
-               const Flattening_parameters& parameters)
+  void minimize_distortion(const Indexed_mesh& triangles,
+                           std::vector<Vector_2>& u,
+                           const Flattening_parameters& parameters)
   {
     Planar_problem problem;
     for(int t = 0; t < triangles.number_of_faces(); ++t)
@@ -259,17 +260,18 @@ private:
     }
     problem.is_free.assign(u.size(), 1);
     m_optimizer.analyze(problem);
-    double reached = distortion(triangles, u);
+    double current_distortion = distortion(triangles, u);
     for(int step = 0; step < parameters.maximum_descent_steps; ++step)
     {
-      const double tolerance = reached > parameters.far_distortion ? parameters.far_tolerance
-                                                                   : parameters.descent_tolerance;
+      const double tolerance = current_distortion > parameters.far_distortion
+                                 ? parameters.far_tolerance
+                                 : parameters.descent_tolerance;
       const Projected_newton::Outcome outcome =
         m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
-      const double gained = outcome.initial_energy - outcome.final_energy;
-      reached = distortion(triangles, u);
-      if(outcome.steps == 0 || gained < tolerance * outcome.final_energy ||
-         reached < parameters.nearly_isometric)
+      const double decrease = outcome.initial_energy - outcome.final_energy;
+      current_distortion = distortion(triangles, u);
+      if(outcome.steps == 0 || decrease < tolerance * outcome.final_energy ||
+         current_distortion < parameters.target_distortion)
         return;
     }
   }
@@ -299,7 +301,7 @@ private:
   Surface_mesh m_mesh;
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;
-  bool m_has_empty_edge = false;
+  bool m_has_degenerate_edge = false;
   Projected_newton m_optimizer;
 };
 

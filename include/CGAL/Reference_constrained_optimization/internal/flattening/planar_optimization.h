@@ -27,14 +27,14 @@ struct Planar_problem
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
   std::vector<Eigen::Matrix2d> metric;
-  std::vector<char> is_free;                // per vertex
-  std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
+  std::vector<char> is_free;                      // per vertex
+  std::vector<std::array<int, 3>> term_triangles; // of the drift barrier's terms
   Drift_terms drift;
   Stencil_terms stencils;
-  std::vector<Vector_2> start; // per vertex: where those terms were collected
+  std::vector<Vector_2> start; // per vertex: its position when the terms were collected
   const Vector_2& origin(int v) const { return start[v]; }
   // per vertex: the unit vector along which it slides, zero if it does not; empty if none does
-  std::vector<Vector_2> slide_direction;
+  std::vector<Vector_2> sliding_direction;
 
   // the shape of an element, and its derivative by a vertex
   Eigen::Matrix2d shape(std::size_t e, const std::vector<Vector_2>& u) const
@@ -43,9 +43,9 @@ struct Planar_problem
   }
   Eigen::Matrix2d corner_map(std::size_t e, int i) const
   {
-    if(slide_direction.empty())
+    if(sliding_direction.empty())
       return metric[e];
-    const Vector_2& d = slide_direction[triples[e][i]];
+    const Vector_2& d = sliding_direction[triples[e][i]];
     return d.isZero(0) ? metric[e] : Eigen::Matrix2d((metric[e] * d) * d.transpose());
   }
 

@@ -16,7 +16,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// No sample of the distance between mesh and R goes beyond its bound, or further beyond.
+// The distances between mesh and R at the samples do not exceed their bounds; those that do on input do not
+// increase.
 struct Distance_bound : Invariant
 {
   void start(const Trial& trial)
@@ -31,10 +32,10 @@ struct Distance_bound : Invariant
     m_is_known = false;
     if(is_known)
       return;
-    update_samples(trial.patch, trial.samples, trial.state.reference, trial.placed, trial.changed,
+    update_samples(trial.patch, trial.samples, trial.state.reference, trial.located, trial.changed,
                    trial.is_changed, m_now);
-    update_guests(trial.patch, trial.samples, trial.state.reference, trial.placed, trial.changed,
-                  m_now);
+    update_projected_samples(trial.patch, trial.samples, trial.state.reference, trial.located,
+                             trial.changed, m_now);
   }
 
   void sum_up(const Trial&, Patch_measure& measure) const { measure.drift_energy = m_now.energy(); }
@@ -42,26 +43,26 @@ struct Distance_bound : Invariant
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
     const Patch_samples& before = trial.samples;
-    // what the barrier is felt by more than what an element holds is as good as beyond the bound
-    const double much =
+    // a barrier energy that exceeds that of an element by much counts as a violation
+    const double tolerance =
       0.5 * std::abs(trial.sums_before.energy) / double(trial.patch.elements.size());
     bool holds = true;
     const auto visit = [&](double distance, double bound, double old, double old_bound) {
-      if(!(distance * old_bound > old * bound) || !Drift_barrier::is_felt(distance, bound))
+      if(!(distance * old_bound > old * bound) || !Drift_barrier::is_active(distance, bound))
         return false;
-      const bool is_beyond = distance > Drift_barrier::last_part * bound;
+      const bool is_beyond = distance > Drift_barrier::limit_factor * bound;
       holds = holds && !is_beyond;
-      return is_beyond ||
-             before.barrier.value(distance, bound) > before.barrier.value(old, old_bound) + much;
+      return is_beyond || before.barrier.value(distance, bound) >
+                            before.barrier.value(old, old_bound) + tolerance;
     };
     for(std::size_t s = 0; s < m_now.samples.size(); ++s)
       if(visit(m_now.samples[s].distance, m_now.samples[s].bound, before.samples[s].distance,
                before.samples[s].bound))
         violating.add_triangle(int(s / 4));
-    for(std::size_t i = 0; i < m_now.guests.size(); ++i)
-      if(visit(m_now.guests[i].distance, m_now.guests[i].bound, before.guests[i].distance,
-               before.guests[i].bound))
-        violating.add_face(m_now.guests[i].polygon);
+    for(std::size_t i = 0; i < m_now.projected_samples.size(); ++i)
+      if(visit(m_now.projected_samples[i].distance, m_now.projected_samples[i].bound,
+               before.projected_samples[i].distance, before.projected_samples[i].bound))
+        violating.add_face(m_now.projected_samples[i].polygon);
     return holds;
   }
 
@@ -69,7 +70,7 @@ struct Distance_bound : Invariant
 
 private:
   Patch_samples m_now;
-  bool m_is_known = false; // as it was gathered
+  bool m_is_known = false; // the gathered samples are those of the first measurement
 };
 
 } // namespace internal

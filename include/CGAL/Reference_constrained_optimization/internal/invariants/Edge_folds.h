@@ -12,8 +12,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// No edge is folded beyond 120 degrees, but for another one that is repaired: their number counts as a
-// defect. Faces outside the patch stay where they are.
+// Folded edges, beyond 120 degrees, count as defects, whose number does not increase. Faces outside the
+// patch are fixed.
 struct Edge_folds : Invariant
 {
   void start(const Trial& trial) { m_is_folded.assign(trial.mesh().number_of_corners(), 0); }
@@ -40,9 +40,9 @@ struct Edge_folds : Invariant
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
     for(int c = 0; c < trial.mesh().number_of_corners(); ++c)
-      if(m_is_folded.has_risen(c))
+      if(m_is_folded.has_increased(c))
         violating.add_faces_at_edge(c);
-    return true; // the number of all decides
+    return true; // only their total is bounded
   }
 
 private:

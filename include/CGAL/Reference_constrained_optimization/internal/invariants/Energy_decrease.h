@@ -15,20 +15,20 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The energy falls, with and without the drift barrier, unless a defect is repaired. Elements whose density
-// has risen much are to blame.
+// The energy falls, with and without the drift barrier, unless a defect is repaired. The vertices of
+// elements whose density increases by much are violating.
 struct Energy_decrease : Invariant
 {
   bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
     const Patch_measure& before = trial.sums_before;
-    if(after.defects() < before.defects() || after.has_fallen_from(before))
+    if(after.defects() < before.defects() || after.is_lower_than(before))
       return true;
-    const double much = 4 * (std::abs(before.energy) / double(trial.patch.elements.size()));
+    const double tolerance = 4 * (std::abs(before.energy) / double(trial.patch.elements.size()));
     for(std::size_t e = 0; e < trial.patch.elements.size(); ++e)
     {
       const double old = trial.before.densities[e], now = trial.after.densities[e];
-      if(now > 1.5 * old || now > old + much)
+      if(now > 1.5 * old || now > old + tolerance)
         violating.add_element(e);
     }
     return false;

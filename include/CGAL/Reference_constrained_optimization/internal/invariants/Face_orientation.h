@@ -12,8 +12,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// No face is inverted against R, and no quad becomes non-convex, for another one that is repaired: their
-// number counts as a defect.
+// Faces that are inverted with respect to R and quads that are not convex count as defects, whose number
+// does not increase.
 struct Face_orientation : Invariant
 {
   void start(const Trial& trial) { m_defects.assign(trial.mesh().number_of_faces(), 0); }
@@ -36,9 +36,9 @@ struct Face_orientation : Invariant
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
     for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
-      if(m_defects.has_risen(f))
+      if(m_defects.has_increased(f))
         violating.add_face(f);
-    return true; // the number of all decides
+    return true; // only their total is bounded
   }
 
 private:

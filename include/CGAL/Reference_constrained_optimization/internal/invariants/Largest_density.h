@@ -14,7 +14,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// No element gets beyond the largest density that the mesh had, or further beyond.
+// No density exceeds the largest one of the mesh before; densities beyond it do not increase.
 struct Largest_density : Invariant
 {
   void set(const Step_limits& limits) { m_limit = limits.density; }

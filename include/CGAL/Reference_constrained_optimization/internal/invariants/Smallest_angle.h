@@ -12,7 +12,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// No angle of a triangle falls below the smallest that the mesh had, or further below.
+// No angle of a triangle falls below the smallest one of the mesh before; angles below it do not decrease.
 struct Smallest_angle : Invariant
 {
   void set(const Step_limits& limits) { m_largest_cosine = limits.cosine; }

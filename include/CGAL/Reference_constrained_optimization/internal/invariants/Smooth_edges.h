@@ -14,13 +14,15 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// On mechanical parts no edge that hardly turns on input becomes sharp, or sharper.
+// On mechanical parts no edge that is smooth on input becomes sharp.
 struct Smooth_edges : Invariant
 {
   void start(const Trial& trial)
   {
-    m_cosines.assign(
-      trial.patch.bounds_turn.empty() ? 0 : std::size_t(trial.mesh().number_of_corners()), 1);
+    m_cosines.assign(trial.patch.bounds_normal_deviation.empty()
+                       ? 0
+                       : std::size_t(trial.mesh().number_of_corners()),
+                     1);
   }
 
   void measure(const Trial& trial)
@@ -30,7 +32,7 @@ struct Smooth_edges : Invariant
     const Indexed_mesh& mesh = trial.mesh();
     for(const int f : trial.changed)
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        if(trial.patch.bounds_turn[f] && trial.has_opposite(c))
+        if(trial.patch.bounds_normal_deviation[f] && trial.has_opposite(c))
           m_cosines.after[trial.edge(c)] = cosine(trial.after.normals[f], trial.opposite_normal(c));
   }
 
@@ -38,10 +40,10 @@ struct Smooth_edges : Invariant
 
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
-    const double cosine_of_sharp = 0.788; // 38 degrees
+    const double smallest_cosine = 0.788; // 38 degrees
     bool holds = true;
     for(std::size_t c = 0; c < m_cosines.after.size(); ++c)
-      if(trial.patch.is_smooth[c] && m_cosines.after[c] < cosine_of_sharp &&
+      if(trial.patch.is_smooth[c] && m_cosines.after[c] < smallest_cosine &&
          m_cosines.after[c] < m_cosines.before[c])
       {
         holds = false;
@@ -57,7 +59,8 @@ private:
     return lengths > 0 ? a.dot(b) / lengths : 1.;
   }
 
-  Compared<double> m_cosines; // per corner, at the first of the two of an edge; of its turn
+  // per corner, at the first of the two of an edge: of its dihedral angle
+  Compared<double> m_cosines;
 };
 
 } // namespace internal

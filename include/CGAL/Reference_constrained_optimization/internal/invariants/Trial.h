@@ -14,7 +14,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What several invariants ask for, measured once.
+// Quantities that several invariants use.
 struct Patch_quantities
 {
   std::vector<Vector_3> normals; // per face
@@ -22,15 +22,15 @@ struct Patch_quantities
   std::vector<double> cosines;   // per face: of its smallest angle
   std::vector<double> stencils;  // per stencil: its value
 
-  // measures some faces with their vertices at `placed`
+  // measures some faces with their vertices at `located`
   template <typename Density>
   void measure(const Patch& patch,
                const std::vector<int>& faces,
                const Density& density,
-               const std::vector<Placed_vertex>& placed)
+               const std::vector<Located_vertex>& located)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return located[v]; };
     normals.resize(mesh.number_of_faces());
     densities.resize(patch.elements.size());
     cosines.resize(mesh.number_of_faces());
@@ -43,7 +43,7 @@ struct Patch_quantities
     }
     stencils.clear();
     for(const Patch::Stencil& s : patch.stencils)
-      stencils.push_back(patch.value(s, placed));
+      stencils.push_back(patch.value(s, located));
   }
 };
 
@@ -52,26 +52,26 @@ struct Patch_measure
 {
   double energy = 0; // of elements and stencils
   double shared_energy =
-    0;                     // of them that of stencils which depend on vertices that others may move
-  double drift_energy = 0; // what the drift barrier adds
-  double angles = 0;       // sum of the faces' smallest, in degrees, where their mean may not fall
-  double volume = 0;       // six times that of the cones over its faces, where that is bounded
+    0; // that part which is of stencils with vertices that other patches may move
+  double drift_energy = 0; // of the drift barrier
+  double angles = 0;       // sum of the faces' smallest angles in degrees, if their mean is bounded
+  double volume = 0;       // six times that of the cones over its faces, if it is bounded
   int inner_defects = 0;   // inverted faces, quads that are not convex, and folded edges inside
   int boundary_defects = 0; // folded edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
-  bool has_fallen_from(const Patch_measure& before) const
+  bool is_lower_than(const Patch_measure& before) const
   {
     return energy < before.energy && energy + drift_energy < before.energy + before.drift_energy;
   }
 };
 
-// A patch whose vertices are tried elsewhere, as invariants see it.
+// A patch with trial positions of its vertices.
 struct Trial
 {
   const Patch& patch;
   const Optimization_state& state;
-  const std::vector<Placed_vertex>& placed; // per vertex: where it is tried
-  const Patch_samples& samples;             // before
+  const std::vector<Located_vertex>& located; // per vertex: its trial position
+  const Patch_samples& samples;               // before
   const Patch_quantities &before, &after;
   const Patch_measure& sums_before;
   const std::vector<Vector_3>& outside_normals; // per corner with a face outside: its normal
@@ -79,7 +79,7 @@ struct Trial
   const std::vector<char>& is_changed;          // per face
 
   const Indexed_mesh& mesh() const { return patch.polygons; }
-  const Placed_vertex& operator()(int v) const { return placed[v]; }
+  const Located_vertex& operator()(int v) const { return located[v]; }
   // the normal of the face across a corner's edge; to be called only where there is one
   const Vector_3& opposite_normal(int c) const
   {
@@ -106,30 +106,30 @@ struct Compared
     after.assign(n, value);
   }
   void accept() { before = after; }
-  bool has_risen(std::size_t i) const { return after[i] > before[i]; }
+  bool has_increased(std::size_t i) const { return after[i] > before[i]; }
 };
 
 // Bounds on single elements, which change between iterations.
 struct Step_limits
 {
-  double density = 0;       // no step may take an element beyond it, or further beyond
-  double cosine = 1;        // no step may take that of an angle beyond it, or further beyond
-  bool accepts_all = false; // what the mover proposes is kept without a test
+  double density = 0; // no step may raise the density of an element above it, or further above
+  double cosine = 1;  // no step may raise that of an angle above it, or further above
+  bool accepts_all = false; // proposals are accepted without a test
 };
 
 // An invariant is a rule that every accepted step obeys. It derives from this class and has
 //   bool holds(const Trial&, Violating_vertices&) const;
 // or, if it is a rule for the sums over a patch,
 //   bool holds(const Trial&, const Patch_measure& after, Violating_vertices&) const;
-// which names the vertices that are to blame where it does not hold. What it compares it measures itself,
-// on the faces that changed.
+// which adds the violating vertices if it does not hold. Each invariant measures its own quantities, on the
+// faces that changed.
 struct Invariant
 {
-  void set(const Step_limits&) {}                    // before a decision
-  void start(const Trial&) {}                        // of a new patch, of which nothing is measured
-  void measure(const Trial&) {}                      // the faces that changed, as they are now
-  void accept() {}                                   // what was measured last is what was before
-  void sum_up(const Trial&, Patch_measure&) const {} // adds the sums over the patch that it knows
+  void set(const Step_limits&) {} // before a decision
+  void start(const Trial&) {}     // of a new patch, before any measurement
+  void measure(const Trial&) {}   // the faces that changed
+  void accept() {}                // the last measurement is that before the next trial
+  void sum_up(const Trial&, Patch_measure&) const {} // adds its sums over the patch
 };
 
 } // namespace internal

@@ -14,7 +14,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The vertices of a patch whose steps break an invariant, each once, in the order in which they were found.
+// The vertices of a patch whose steps violate an invariant, each once, in the order in which they were
+// found.
 class Violating_vertices
 {
 public:

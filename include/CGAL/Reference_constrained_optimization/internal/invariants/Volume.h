@@ -17,18 +17,18 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The volume of mechanical parts stays within a bound. Patches are solved at the same time: each has a
-// share, by its faces, of what the mesh may still gain or lose, for all proposals together.
+// The volume of mechanical parts is bounded. Patches are solved at the same time: each may use a share, by
+// its number of faces, of the remaining change, for all proposals together.
 struct Volume : Invariant
 {
   void start(const Trial& trial)
   {
     const Optimization_state& state = trial.state;
-    m_volumes.assign(state.guards_volume() ? std::size_t(trial.mesh().number_of_faces()) : 0, 0);
+    m_volumes.assign(state.bounds_volume() ? std::size_t(trial.mesh().number_of_faces()) : 0, 0);
     const double share = double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
     m_largest_gain = share * (std::max)(0., state.largest_volume_change - state.volume_change);
     m_largest_loss = share * (std::max)(0., state.largest_volume_change + state.volume_change);
-    m_apex = trial.placed[0].position;
+    m_apex = trial.located[0].position;
     m_is_first = true;
   }
 
@@ -37,9 +37,9 @@ struct Volume : Invariant
     if(m_volumes.after.empty())
       return;
     for(const int f : trial.changed)
-      if(trial.patch.bounds_turn[f])
+      if(trial.patch.bounds_normal_deviation[f])
         m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f],
-                                         trial.patch.placed[0].position);
+                                         trial.patch.located[0].position);
   }
 
   void accept()
@@ -51,7 +51,7 @@ struct Volume : Invariant
 
   void sum_up(const Trial&, Patch_measure& measure) const { measure.volume = sum(); }
 
-  // the vertices that contribute most are to blame
+  // the vertices that contribute most are violating
   bool holds(const Trial& trial, const Patch_measure&, Violating_vertices& violating) const
   {
     const double gain = sum() - m_initial;
@@ -59,7 +59,7 @@ struct Volume : Invariant
     if(!grows && !shrinks)
       return true;
     const Indexed_mesh& mesh = trial.mesh();
-    std::vector<double> swept(trial.placed.size(), 0);
+    std::vector<double> swept(trial.located.size(), 0);
     double sum = 0;
     int number = 0;
     for(std::size_t v = 0; v < swept.size(); ++v)
@@ -70,7 +70,7 @@ struct Volume : Invariant
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         normal += trial.before.normals[mesh.corner_face[mesh.vertex_corners[k]]];
       swept[v] =
-        (grows ? 1 : -1) * normal.dot(trial.placed[v].position - trial.patch.placed[v].position);
+        (grows ? 1 : -1) * normal.dot(trial.located[v].position - trial.patch.located[v].position);
       if(swept[v] > 0)
       {
         sum += swept[v];

@@ -28,9 +28,9 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A surface on which paths are laid between landmarks, disjoint but for their ends. An edge whose
-// two vertices are taken by landmarks, paths or the border, without being part of them, is split:
-// then there is always a way between two paths, and no triangle has its three vertices on one path.
+// A surface on which paths are traced between landmarks, disjoint except for their ends. An edge between
+// two vertices of landmarks, paths or the border that is no part of them is split: then there is always a
+// path between two others, and no triangle has its three vertices on one path.
 class Cut_surface
 {
 public:
@@ -73,7 +73,7 @@ public:
     m_scale = 1 / std::sqrt(surface_area(copy.mesh, copy.points));
   }
 
-  // the copy's property maps are its own
+  // the copy has property maps of its own
   Cut_surface(const Cut_surface& other)
     : m_mesh(other.m_mesh),
       m_is_taken(m_mesh.add_property_map<Vertex, bool>("v:is_taken", false).first),
@@ -104,8 +104,8 @@ public:
       add_landmark(Vertex(Vertex::size_type(v)));
   }
 
-  // one more landmark on the border: the point that lies at `length` along the border, behind the
-  // landmark `after`; an edge is split there if need be
+  // adds a landmark on the border, at `length` along the border from the landmark `after`; splits an edge
+  // if necessary
   int add_border_landmark(int after, double length)
   {
     Halfedge h = border_halfedge_from(m_landmarks[after]);
@@ -128,7 +128,7 @@ public:
 
   bool is_on_border(int landmark) const { return m_mesh.is_border(m_landmarks[landmark]); }
 
-  // numbers of the landmarks on the border, as its half-edges pass them
+  // indices of the landmarks on the border, in the order of its half-edges
   std::vector<int> border_landmarks() const
   {
     std::vector<int> result;
@@ -141,12 +141,12 @@ public:
     return result;
   }
 
-  // length of the border from one of its landmarks to another, or all the way round to itself
+  // length of the border from one of its landmarks to another, or once around to itself
   double border_length(int from, int to) const { return length(border_between(from, to)); }
 
   bool border_is_empty() const { return m_border == Mesh::null_halfedge(); }
 
-  // the vertex of the border that is nearest, with its distance
+  // the closest vertex of the border, with its distance
   std::pair<double, Vertex> closest_on_border(const Distances& distances) const
   {
     std::pair<double, Vertex> best(std::numeric_limits<double>::infinity(), Mesh::null_vertex());
@@ -158,7 +158,7 @@ public:
   double arc_length(int arc) const { return length(m_arcs[arc]); }
 
   // the arc of the border from one of its landmarks to the next
-  void lay_border_arc(int from, int to) { m_arcs.push_back(border_between(from, to)); }
+  void trace_border_arc(int from, int to) { m_arcs.push_back(border_between(from, to)); }
 
   // splits all edges between taken vertices that are not part of an arc
   void split_chords()
@@ -171,7 +171,7 @@ public:
       split(m_mesh.halfedge(e), 0.5);
   }
 
-  // all vertices' distance from a landmark, with nothing in the way
+  // distances of all vertices from a landmark, without obstacles
   Distances distances(int landmark) const
   {
     return search(
@@ -188,7 +188,7 @@ public:
     const std::vector<int> sector_of = sectors(from, tree);
     const Vertex start = m_landmarks[from];
     std::vector<Vertex> goals;
-    for(const Halfedge h : leaving(to))
+    for(const Halfedge h : outgoing(to))
       if(!m_is_taken[m_mesh.target(h)])
         goals.push_back(m_mesh.target(h));
     return search(
@@ -204,7 +204,8 @@ public:
   }
 
   // cuts along the path that arrives within a sector, from `from` to `to`
-  void lay_path(int from, int to, const Landmark_tree& tree, int sector, const Distances& distances)
+  void
+  trace_path(int from, int to, const Landmark_tree& tree, int sector, const Distances& distances)
   {
     const Halfedge last = last_step(to, tree, sector, distances).second;
     std::vector<Halfedge> arc(1, last);
@@ -239,21 +240,21 @@ private:
            !m_mesh.is_border(e);
   }
 
-  double length(const std::vector<Halfedge>& way) const
+  double length(const std::vector<Halfedge>& path) const
   {
     double sum = 0;
-    for(const Halfedge h : way)
+    for(const Halfedge h : path)
       sum += length(h);
     return sum;
   }
 
-  // the border's half-edges from one landmark on it to another, or all the way round to itself
+  // the border's half-edges from one landmark on it to another, or once around to itself
   std::vector<Halfedge> border_between(int from, int to) const
   {
-    std::vector<Halfedge> way(1, border_halfedge_from(m_landmarks[from]));
-    while(m_mesh.target(way.back()) != m_landmarks[to])
-      way.push_back(m_mesh.next(way.back()));
-    return way;
+    std::vector<Halfedge> path(1, border_halfedge_from(m_landmarks[from]));
+    while(m_mesh.target(path.back()) != m_landmarks[to])
+      path.push_back(m_mesh.next(path.back()));
+    return path;
   }
 
   Halfedge border_halfedge_from(Vertex v) const
@@ -264,7 +265,7 @@ private:
     return Mesh::null_halfedge();
   }
 
-  // splits the edge at the part t of its way, and the faces at it
+  // splits the edge at the fraction t of its length, and the faces at it
   Vertex split(Halfedge h, double t)
   {
     const auto p = m_mesh.point(m_mesh.source(h)), q = m_mesh.point(m_mesh.target(h));
@@ -272,15 +273,15 @@ private:
     const Vertex v = m_mesh.target(n);
     m_mesh.point(v) = p + t * (q - p);
     m_is_taken[v] = false;
-    const Halfedge o = m_mesh.opposite(m_mesh.next(n)); // arrives at v from the other side
-    for(const Halfedge arriving : {n, o})
-      if(!m_mesh.is_border(arriving))
-        CGAL::Euler::split_face(arriving, m_mesh.next(m_mesh.next(arriving)), m_mesh);
+    const Halfedge o = m_mesh.opposite(m_mesh.next(n)); // the incoming one on the other side
+    for(const Halfedge incoming : {n, o})
+      if(!m_mesh.is_border(incoming))
+        CGAL::Euler::split_face(incoming, m_mesh.next(m_mesh.next(incoming)), m_mesh);
     return v;
   }
 
-  // the half-edges that leave a landmark, counterclockwise; on the border they start behind the hole
-  std::vector<Halfedge> leaving(int landmark) const
+  // the outgoing half-edges of a landmark, counterclockwise; on the border they start after the hole
+  std::vector<Halfedge> outgoing(int landmark) const
   {
     const Vertex v = m_landmarks[landmark];
     Halfedge start = m_mesh.opposite(m_mesh.halfedge(v));
@@ -299,14 +300,14 @@ private:
 
   std::size_t rank(int landmark, Halfedge h) const
   {
-    const std::vector<Halfedge> around = leaving(landmark);
+    const std::vector<Halfedge> around = outgoing(landmark);
     return std::size_t(std::find(around.begin(), around.end(), h) - around.begin());
   }
 
   // the sector of each half-edge that leaves a landmark; -1 for those of arcs
   std::vector<int> sectors(int landmark, const Landmark_tree& tree) const
   {
-    const std::vector<Halfedge> around = leaving(landmark);
+    const std::vector<Halfedge> around = outgoing(landmark);
     const std::vector<Landmark_tree::Stub>& stubs = tree.stubs(landmark);
     std::vector<int> stub_of(around.size(), -1);
     for(std::size_t s = 0; s < stubs.size(); ++s)
@@ -318,7 +319,7 @@ private:
     std::vector<int> result(around.size(), stubs.empty() ? 0 : -1);
     if(stubs.empty())
       return result;
-    int current = 0; // twice around: the first stub may come late
+    int current = 0; // twice around, since the first stub may be late
     for(std::size_t k = 0; k < 2 * around.size(); ++k)
     {
       const std::size_t i = k % around.size();
@@ -329,7 +330,7 @@ private:
     return result;
   }
 
-  // shortest paths (Dijkstra); they end at a limit or where all goals, if there are any, are reached
+  // shortest paths (Dijkstra), up to a limit or until all goals, if there are any, are reached
   template <typename Blocked, typename FirstStep>
   Distances search(int landmark,
                    const Blocked& is_blocked,
@@ -381,7 +382,7 @@ private:
   std::pair<double, Halfedge>
   last_step(int landmark, const Landmark_tree& tree, int sector, const Distances& distances) const
   {
-    const std::vector<Halfedge> around = leaving(landmark);
+    const std::vector<Halfedge> around = outgoing(landmark);
     const std::vector<int> sector_of = sectors(landmark, tree);
     std::pair<double, Halfedge> best(std::numeric_limits<double>::infinity(),
                                      Mesh::null_halfedge());
@@ -401,7 +402,7 @@ private:
   Mesh::Property_map<Edge, bool> m_is_cut;
   Halfedge m_border = Mesh::null_halfedge();
   std::vector<Vertex> m_landmarks;
-  std::vector<std::vector<Halfedge>> m_arcs; // as those of the tree
+  std::vector<std::vector<Halfedge>> m_arcs; // in the order of the tree
   double m_scale = 1;
 };
 

@@ -27,8 +27,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// From landmarks to a map between two surfaces: both are cut along trees of paths that pass the
-// landmarks in the same order, laid out in the same convex polygon, and the two maps are composed.
+// A map between two surfaces from landmarks: both are cut along trees of paths with the same order around
+// the landmarks, flattened to the same convex polygon, and the two maps are composed.
 class Landmark_map
 {
 public:
@@ -74,7 +74,7 @@ public:
   {
     std::vector<Vector_3> best, points;
     double least = std::numeric_limits<double>::infinity();
-    for(const Landmark_pairs& edges : promising_trees(number_of_trees, seed))
+    for(const Landmark_pairs& edges : candidate_trees(number_of_trees, seed))
     {
       Tried_tree t;
       t.edges = edges;
@@ -106,7 +106,7 @@ private:
     }
   }
 
-  // brings three landmarks at least to the borders, and checks their order
+  // adds landmarks on the borders up to three, and checks their order
   void set_border()
   {
     if(m_source.border_landmarks().empty())
@@ -114,7 +114,7 @@ private:
     std::vector<int> order = m_source.border_landmarks();
     if(order.size() < 3)
     {
-      // a border in few pieces gets more, of equal length
+      // a border of few arcs is divided into arcs of equal length
       const int parts = order.size() == 1 ? 3 : 2;
       std::vector<double> lengths[2];
       for(std::size_t i = 0; i < order.size(); ++i)
@@ -145,7 +145,7 @@ private:
     }
   }
 
-  // the landmark that is nearest to the borders gets a counterpart there
+  // connects the landmark that is closest to the borders to a new one there
   void connect_to_border()
   {
     double least = std::numeric_limits<double>::infinity();
@@ -165,10 +165,10 @@ private:
     measure_distances();
   }
 
-  // Trees that are worth being laid out, the best first. Laying paths is cheap, thus many trees are
-  // compared by them: where paths have to go a long way round earlier ones, those passed another
-  // landmark on different sides of it on the two surfaces, and the map would be twisted.
-  std::vector<Landmark_pairs> promising_trees(int number, unsigned int seed) const
+  // Candidate trees, the best first. Tracing paths is cheap, so that many trees are compared by their
+  // lengths: long detours around earlier paths indicate that these passed another landmark on different
+  // sides on the two surfaces, and the map would be twisted.
+  std::vector<Landmark_pairs> candidate_trees(int number, unsigned int seed) const
   {
     const int trees_per_layout = 4;
     Spanning_trees trees(m_distance, m_border, seed);
@@ -182,7 +182,7 @@ private:
       Cut_surface source(m_source), reference(m_reference);
       Landmark_tree tree(int(source.landmarks().size()));
       double cost = std::numeric_limits<double>::infinity();
-      if(lay_tree(edges, tree, source, reference))
+      if(trace_tree(edges, tree, source, reference))
       {
         double length = 0, direct = 0;
         for(std::size_t i = 0; i < tree.arcs().size(); ++i)
@@ -203,33 +203,33 @@ private:
     return result;
   }
 
-  // false if there is no way for one of the paths
-  bool lay_tree(const Landmark_pairs& edges,
-                Landmark_tree& tree,
-                Cut_surface& source,
-                Cut_surface& reference) const
+  // false if one of the paths does not exist
+  bool trace_tree(const Landmark_pairs& edges,
+                  Landmark_tree& tree,
+                  Cut_surface& source,
+                  Cut_surface& reference) const
   {
     if(!m_border.empty())
     {
       tree.add_border(m_border);
       for(const Landmark_tree::Arc& arc : tree.arcs())
       {
-        source.lay_border_arc(arc.from, arc.to);
-        reference.lay_border_arc(arc.from, arc.to);
+        source.trace_border_arc(arc.from, arc.to);
+        reference.trace_border_arc(arc.from, arc.to);
       }
     }
     for(const auto& edge : edges)
-      if(!lay_path(edge.first, edge.second, tree, source, reference))
+      if(!trace_path(edge.first, edge.second, tree, source, reference))
         return false;
     return true;
   }
 
-  // the points for one tree; false if one of the surfaces could not be laid out bijectively
+  // the points for one tree; false if one of the surfaces could not be flattened bijectively
   bool map_along(const Landmark_pairs& edges, std::vector<Vector_3>& points) const
   {
     Cut_surface source(m_source), reference(m_reference);
     Landmark_tree tree(int(source.landmarks().size()));
-    if(!lay_tree(edges, tree, source, reference))
+    if(!trace_tree(edges, tree, source, reference))
       return false;
 
     const std::vector<Landmark_tree::Side> sides = tree.boundary();
@@ -243,10 +243,10 @@ private:
            Polygon_transfer(source, source_map, reference, reference_map).transfer(points);
   }
 
-  // Lays corresponding paths: of all gaps between the paths at both ends, those are taken in which
-  // the paths on the two surfaces are shortest together.
+  // Traces corresponding paths: of all sectors between the paths at both ends, those are chosen in which
+  // the sum of the lengths on the two surfaces is smallest.
   static bool
-  lay_path(int from, int to, Landmark_tree& tree, Cut_surface& source, Cut_surface& reference)
+  trace_path(int from, int to, Landmark_tree& tree, Cut_surface& source, Cut_surface& reference)
   {
     double least = std::numeric_limits<double>::infinity();
     int best_from = 0, best_to = 0;
@@ -279,8 +279,8 @@ private:
     }
     if(!std::isfinite(least))
       return false;
-    source.lay_path(from, to, tree, best_to, best.first);
-    reference.lay_path(from, to, tree, best_to, best.second);
+    source.trace_path(from, to, tree, best_to, best.first);
+    reference.trace_path(from, to, tree, best_to, best.second);
     tree.add_path(from, best_from, to, best_to);
     return true;
   }

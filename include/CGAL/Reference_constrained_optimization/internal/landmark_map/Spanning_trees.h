@@ -20,9 +20,9 @@ namespace internal {
 
 typedef std::vector<std::pair<int, int>> Landmark_pairs;
 
-// Trees that connect landmarks, in the order in which they are worth a try. Which one gives the map
-// of least distortion cannot be told beforehand: short trees cut little, trees that are stars keep
-// ways short. `distance[i][j]` may be perturbed by the random generator.
+// Trees that connect landmarks, the most promising first. Which one gives the map of least distortion is
+// not known in advance: short trees cut little, stars have short paths. `distance[i][j]` may be perturbed
+// by the random generator.
 class Spanning_trees
 {
 public:

@@ -29,8 +29,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A surface, cut open along its arcs and laid out in a convex polygon, one side for each piece of
-// the disk's boundary.
+// A surface, cut along its arcs and flattened to a convex polygon, one side for each arc of the disk's
+// boundary.
 class Polygon_flattening
 {
   typedef Cut_surface::Mesh Mesh;
@@ -56,7 +56,7 @@ public:
     {
       const double angle = -6.283185307179586 * passed;
       corners.emplace_back(std::cos(angle), std::sin(angle));
-      // short sides get more than their share: all of their surroundings have to find room there
+      // short sides are lengthened, to give room to the faces along them
       passed += 0.5 * l / sum + 0.5 / double(lengths.size());
     }
     return corners;
@@ -72,20 +72,20 @@ public:
     typedef CGAL::Eigen_solver_traits<Eigen::SparseLU<CGAL::Eigen_sparse_matrix<double>::EigenType>>
       Solver;
     m_surface = &surface;
-    lay_border(sides, corners);
+    set_border_points(sides, corners);
     // mean value coordinates are not defined at an edge without length
-    return (!has_empty_edge() &&
+    return (!has_degenerate_edge() &&
             run(SMP::Mean_value_coordinates_parameterizer_3<Seam_mesh, Border, Solver>(
               Border(m_border_points)))) ||
            run(SMP::Barycentric_mapping_parameterizer_3<Seam_mesh, Border, Solver>(
              Border(m_border_points)));
   }
 
-  // where the target of a half-edge that has a face is; a vertex on a cut has several places
+  // the position of the target of a half-edge that has a face; a vertex on a cut has several positions
   const Point_2& operator()(Halfedge h) const { return m_points[h]; }
 
 private:
-  // CGAL's concept of a border parameterizer: places are given per half-edge of the border
+  // CGAL's concept of a border parameterizer: positions are given per half-edge of the border
   struct Fixed_border
   {
     const std::vector<Point_2>* points;
@@ -109,7 +109,7 @@ private:
     bool is_border_convex() const { return true; }
   };
 
-  bool has_empty_edge() const
+  bool has_degenerate_edge() const
   {
     const Mesh& mesh = m_surface->mesh();
     return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Cut_surface::Edge e) {
@@ -118,8 +118,8 @@ private:
     });
   }
 
-  void lay_border(const std::vector<Landmark_tree::Side>& sides,
-                  const std::vector<Point_2>& corners)
+  void set_border_points(const std::vector<Landmark_tree::Side>& sides,
+                         const std::vector<Point_2>& corners)
   {
     m_border.clear();
     m_border_points.assign(m_surface->mesh().number_of_halfedges(), Point_2(0, 0));

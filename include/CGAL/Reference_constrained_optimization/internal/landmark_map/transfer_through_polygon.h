@@ -62,7 +62,7 @@ private:
     return Vector_3(p.x(), p.y(), p.z());
   }
 
-  // a vertex on an arc keeps its part of the way
+  // a vertex on an arc keeps its fraction of the arc length
   void transfer_arc(std::size_t i, std::vector<Vector_3>& points, std::vector<char>& is_done) const
   {
     const std::vector<Halfedge>& from = m_source.arcs()[i];
@@ -83,7 +83,7 @@ private:
     }
   }
 
-  // breadth first over the source, so that each vertex is looked for near one of its neighbours
+  // breadth first over the source, so that each vertex is located starting from one of its neighbours
   bool transfer_interior(std::vector<Vector_3>& points, std::vector<char>& is_done)
   {
     const Mesh& mesh = m_source.mesh();

@@ -25,7 +25,7 @@ public:
     const Eigen::AlignedBox3d box = bounding_box(reference.mesh, reference.points);
     const double diagonal = box.diagonal().norm();
     if(!is_safe_diagonal(diagonal))
-      return; // it is refused
+      return; // it is rejected later
     int exponent = 0;
     std::frexp(diagonal, &exponent);
     m_unit = std::ldexp(1., exponent);
@@ -35,16 +35,16 @@ public:
         m_origin(i) = box.center()(i);
   }
 
-  // of length, in that of the caller
+  // of length, in that of the user
   double unit() const { return m_unit; }
-  // how far the caller's origin is away: coordinates are as coarse as there
+  // distance of the user's origin, which determines the rounding of coordinates
   double distance_of_origin() const { return m_origin.cwiseAbs().maxCoeff() / m_unit; }
 
   Vector_3 operator()(const Vector_3& given) const { return (given - m_origin) / m_unit; }
-  Vector_3 to_caller(const Vector_3& p) const { return m_unit * p + m_origin; }
+  Vector_3 to_user(const Vector_3& p) const { return m_unit * p + m_origin; }
 
-  // takes the points of a mesh into the frame
-  void take(Mesh_copy& copy) const
+  // transforms the points of a mesh to the frame
+  void transform(Mesh_copy& copy) const
   {
     for(Vector_3& p : copy.points)
       p = (*this)(p);

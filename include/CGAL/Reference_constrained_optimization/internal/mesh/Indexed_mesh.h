@@ -26,8 +26,7 @@ namespace internal {
 typedef Eigen::Vector2d Vector_2;
 typedef Eigen::Vector3d Vector_3;
 
-// Fans of more faces than this are not looked at again for each of their faces: that would take time in
-// proportion to the square.
+// Fans of more faces than this are not traversed for each of their faces: that would take quadratic time.
 constexpr int largest_small_valence = 64;
 
 // A polygon mesh in plain arrays. A corner is a face's vertex and at the same time the half-edge
@@ -63,7 +62,7 @@ public:
     mark_border_vertices();
   }
 
-  // the same for part of a mesh that has been looked at before: what is opposite is known
+  // the same for a part of a mesh whose opposite corners are known
   Indexed_mesh(std::vector<int> begins,
                std::vector<int> vertices,
                std::vector<int> opposites,
@@ -119,14 +118,14 @@ public:
   }
 
 private:
-  // the first index below n for which is_it(i) is true, or -1
-  template <typename ConcurrencyTag, typename IsIt>
-  static int find_first(int n, const IsIt& is_it)
+  // the first index below n for which predicate(i) is true, or -1
+  template <typename ConcurrencyTag, typename Predicate>
+  static int find_first(int n, const Predicate& predicate)
   {
     std::atomic<int> first(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       int i = begin;
-      while(i < end && !is_it(i))
+      while(i < end && !predicate(i))
         ++i;
       int known = first;
       while(i < end && i < known && !first.compare_exchange_weak(known, i))
@@ -188,23 +187,23 @@ private:
     opposite.assign(n, -1);
     const int refused = find_first<ConcurrencyTag>(n, [&](int c) {
       const int s = source(c), t = targets[c];
-      // an edge is searched for at the end that has fewer, or large fans would take long
-      const bool looks_at_target = valence(t) < valence(s);
-      const int v = looks_at_target ? t : s;
-      int matches = 0, twins = 0;
+      // an edge is searched for at the end of smaller valence, as large fans would take long
+      const bool searches_target = valence(t) < valence(s);
+      const int v = searches_target ? t : s;
+      int matches = 0, duplicates = 0;
       for(int k = vertex_begin[v]; k < vertex_begin[v + 1]; ++k)
       {
-        const int leaving = vertex_corners[k], arriving = previous(leaving);
-        const int match = looks_at_target ? leaving : arriving,
-                  twin = looks_at_target ? arriving : leaving;
+        const int outgoing = vertex_corners[k], incoming = previous(outgoing);
+        const int match = searches_target ? outgoing : incoming,
+                  duplicate = searches_target ? incoming : outgoing;
         if(source(match) == t && targets[match] == s)
         {
           opposite[c] = match;
           ++matches;
         }
-        twins += source(twin) == s && targets[twin] == t;
+        duplicates += source(duplicate) == s && targets[duplicate] == t;
       }
-      return s == t || matches > 1 || twins > 1;
+      return s == t || matches > 1 || duplicates > 1;
     });
     if(refused >= 0)
       refuse(refused);
@@ -275,7 +274,7 @@ inline double surface_area(const Indexed_mesh& mesh, const std::vector<Vector_3>
   return sum;
 }
 
-// vertices without faces may be anywhere, and count in none of these
+// vertices without faces are ignored in these
 inline Eigen::AlignedBox3d bounding_box(const Indexed_mesh& mesh,
                                         const std::vector<Vector_3>& points)
 {

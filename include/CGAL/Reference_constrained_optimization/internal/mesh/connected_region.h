@@ -14,19 +14,19 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The faces that are left and hang together with the first one by edges; they are not left any more.
+// The unvisited faces that are connected with the first one by edges; they are marked as visited.
 inline std::vector<int>
-take_connected_region(const Indexed_mesh& mesh, int first, std::vector<char>& is_left)
+extract_connected_region(const Indexed_mesh& mesh, int first, std::vector<char>& is_unvisited)
 {
   std::vector<int> region(1, first);
-  is_left[first] = 0;
+  is_unvisited[first] = 0;
   for(std::size_t i = 0; i < region.size(); ++i)
     for(int c = mesh.face_begin[region[i]]; c < mesh.face_begin[region[i] + 1]; ++c)
     {
       const int f = mesh.opposite[c] < 0 ? -1 : mesh.corner_face[mesh.opposite[c]];
-      if(f >= 0 && is_left[f])
+      if(f >= 0 && is_unvisited[f])
       {
-        is_left[f] = 0;
+        is_unvisited[f] = 0;
         region.push_back(f);
       }
     }

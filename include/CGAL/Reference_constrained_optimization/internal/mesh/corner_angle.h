@@ -32,10 +32,10 @@ double corner_angle(const Indexed_mesh& mesh, const PointAccess& point, int c)
   return angle_between(a, b);
 }
 
-// What the smallest angle around a vertex can be if its corners share the angle that is there: the
-// triangle with the share at the top is isosceles at best.
+// An upper bound on the smallest angle of the faces at a vertex for its angle sum: all corners at the
+// vertex are equal, and the triangles isosceles.
 template <typename PointAccess>
-double shared_angle(const Indexed_mesh& mesh, const PointAccess& point, int v)
+double vertex_angle_bound(const Indexed_mesh& mesh, const PointAccess& point, int v)
 {
   const int begin = mesh.vertex_begin[v], end = mesh.vertex_begin[v + 1];
   double sum = 0;

@@ -24,8 +24,7 @@ double height_at_corner(const Indexed_mesh& mesh, const PointAccess& point, int 
   return longest > 0 ? u.cross(v).norm() / longest : 0;
 }
 
-// By how much coordinates may differ from what was meant; the origin that they were rounded with may be
-// that far away. `point(v)` is the position of a vertex.
+// The rounding of coordinates, whose origin may be that far away. `point(v)` is the position of a vertex.
 template <typename PointAccess>
 double rounding_of(const Indexed_mesh& mesh, const PointAccess& point, double distance_of_origin)
 {
@@ -33,7 +32,7 @@ double rounding_of(const Indexed_mesh& mesh, const PointAccess& point, double di
          (distance_of_origin + largest_coordinate(mesh, point));
 }
 
-// Whether some face is more than a line, by more than rounding of the coordinates explains.
+// Whether some face has an area that exceeds the rounding of the coordinates.
 template <typename PointAccess>
 bool has_area(const Indexed_mesh& mesh, const PointAccess& point, double distance_of_origin = 0)
 {

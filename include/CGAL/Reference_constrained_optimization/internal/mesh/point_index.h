@@ -18,7 +18,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// exact coordinates, for looking up
+// exact coordinates as a key
 typedef std::array<double, 3> Point_key;
 
 inline Point_key point_key(const Vector_3& p)
@@ -30,7 +30,7 @@ template <typename Value>
 using Point_map = std::unordered_map<Point_key, Value, boost::hash<Point_key>>;
 
 // Which of some points has exactly the given coordinates. A mesh often is its own reference, or
-// shares vertices with it: where they lie need not be searched for.
+// shares vertices with it: those vertices need no search.
 class Point_index
 {
 public:

@@ -16,9 +16,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // The mesh with its faces split into triangles. split(f) gives the corners of the triangles of face f,
-// one or two; `on_triangle(f)` is called for each triangle in turn. What is opposite is taken over from
-// the mesh: diagonals of two quads that share two of their vertices join the same two, so that vertices
-// do not tell.
+// one or two; `on_triangle(f)` is called for each triangle in turn. Opposite corners are taken from the
+// mesh, since two quads that share two vertices can have diagonals with the same end points.
 template <typename Split, typename OnTriangle>
 Indexed_mesh split_mesh(const Indexed_mesh& mesh, const Split& split, const OnTriangle& on_triangle)
 {
@@ -38,16 +37,16 @@ Indexed_mesh split_mesh(const Indexed_mesh& mesh, const Split& split, const OnTr
       begins.push_back(int(corners.size()));
     }
   std::vector<int> opposites(corners.size(), -1);
-  int open = -1; // the side of a diagonal whose other side is still to come
+  int unmatched = -1; // the first side of a diagonal, until its other side is found
   for(int c = 0; c < int(corners.size()); ++c)
     if(old_corner[c] < 0)
     {
-      if(open >= 0)
+      if(unmatched >= 0)
       {
-        opposites[c] = open;
-        opposites[open] = c;
+        opposites[c] = unmatched;
+        opposites[unmatched] = c;
       }
-      open = open < 0 ? c : -1;
+      unmatched = unmatched < 0 ? c : -1;
     }
     else if(mesh.opposite[old_corner[c]] >= 0)
       opposites[c] = new_corner[mesh.opposite[old_corner[c]]];

@@ -15,7 +15,7 @@ namespace internal {
 
 // The shape of a triangle in space as a 2x2 matrix whose columns are its two edge vectors in an
 // orthonormal frame of its plane. The frame is oriented by `normal`, so that the determinant is
-// negative where the triangle is turned against the surface.
+// negative where the triangle is inverted with respect to the surface.
 inline Eigen::Matrix2d
 signed_shape(const Vector_3& p0, const Vector_3& p1, const Vector_3& p2, const Vector_3& normal)
 {
@@ -40,8 +40,8 @@ inline Eigen::Matrix2d triangle_shape(const Vector_3& p0, const Vector_3& p1, co
 }
 
 // The metric that turns a planar triangle (edge matrix `plane`) into its shape on the surface.
-// Where one of the two is inverted or nearly flat no linear map tells anything about its
-// surroundings: then it is the uniform scaling `fallback_scale`.
+// Where one of the two is inverted or nearly degenerate a linear map is no approximation of the surface:
+// then it is the uniform scaling `fallback_scale`.
 inline Eigen::Matrix2d
 surface_metric(const Eigen::Matrix2d& plane, const Eigen::Matrix2d& shape, double fallback_scale)
 {

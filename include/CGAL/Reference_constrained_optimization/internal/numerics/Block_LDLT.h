@@ -85,15 +85,15 @@ public:
     return sum;
   }
 
-  // factorizes the matrix plus `shift` times the identity; false if that is not positive definite. If it
-  // is given up, the next call begins anew.
+  // factorizes the matrix plus `shift` times the identity; false if that is not positive definite. After an
+  // interruption the next call starts from the beginning.
   bool factorize(double shift, Interruption* interruption = nullptr)
   {
-    std::fill(m_row.begin(), m_row.end(), Block()); // a failure leaves it half done
+    std::fill(m_row.begin(), m_row.end(), Block()); // it is incomplete after a failure
     std::copy(m_column_begin.begin(), m_column_begin.end() - 1, m_column_end.begin());
     for(int k = 0; k < m_size; ++k)
     {
-      check_now_and_then(interruption, k);
+      check_periodically(interruption, k);
       for(int p = m_value_begin[k]; p < m_value_begin[k + 1]; ++p)
         m_row[m_value_row[p]] = m_values[p];
       const Block& diagonal = m_diagonal[k];
@@ -102,7 +102,7 @@ public:
       for(int q = m_row_begin[k]; q < end;)
       {
         const int j = m_row_column[q];
-        if(m_is_twin[j] && q + 1 < end)
+        if(m_has_same_rows[j] && q + 1 < end)
         {
           apply_columns<2>(j, d);
           q += 2;
@@ -120,12 +120,12 @@ public:
   }
 
   // the solution for the last factorization; both may be the same vector
-  void solve(const Eigen::VectorXd& right, Eigen::VectorXd& solution)
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& solution)
   {
     for(int i = 0; i < m_size; ++i)
     {
-      m_x[2 * m_position[i]] = right(2 * i);
-      m_x[2 * m_position[i] + 1] = right(2 * i + 1);
+      m_x[2 * m_position[i]] = rhs(2 * i);
+      m_x[2 * m_position[i] + 1] = rhs(2 * i + 1);
     }
     for(int j = 0; j < m_size; ++j)
     {
@@ -168,7 +168,7 @@ private:
     double v[4];
   };
 
-  // written with values that no store can change, else compilers reload them
+  // written with local values, since compilers reload those that a store may change
   static void subtract_product(const Block& l, const Block& z, Block& sum)
   {
     const double s0 = sum.v[0] - (l.v[0] * z.v[0] + l.v[2] * z.v[1]);
@@ -230,8 +230,8 @@ private:
     return true;
   }
 
-  // turns counts, which begin at [1], into where parts begin
-  static void sum_up(std::vector<int>& begins)
+  // prefix sums: turns counts, which begin at [1], into offsets
+  static void prefix_sums(std::vector<int>& begins)
   {
     for(std::size_t i = 1; i < begins.size(); ++i)
       begins[i] += begins[i - 1];
@@ -244,7 +244,7 @@ private:
     for(const auto& p : pairs)
       if(p[0] >= 0 && p[1] >= 0)
         ++m_begin[(std::min)(p[0], p[1]) + 1];
-    sum_up(m_begin);
+    prefix_sums(m_begin);
     m_list.resize(m_begin[m_size]);
     m_next.assign(m_begin.begin(), m_begin.end() - 1);
     for(std::size_t i = 0; i < pairs.size(); ++i)
@@ -297,7 +297,7 @@ private:
     for(int a = 0; a < m_size; ++a)
       for(int e = outer[a] + 1; e < outer[a + 1]; ++e)
         ++m_value_begin[(std::max)(m_position[a], m_position[inner[e]]) + 1];
-    sum_up(m_value_begin);
+    prefix_sums(m_value_begin);
     m_next.assign(m_value_begin.begin(), m_value_begin.end() - 1);
     m_value_row.resize(count - m_size);
     m_list.resize(count);
@@ -336,20 +336,21 @@ private:
         }
     }
     m_row_begin[m_size] = int(m_row_column.size());
-    sum_up(m_column_begin);
+    prefix_sums(m_column_begin);
     m_column_end.assign(m_column_begin.begin(), m_column_begin.end() - 1);
     m_column_row.resize(m_row_column.size());
     for(int k = 0; k < m_size; ++k)
       for(int q = m_row_begin[k]; q < m_row_begin[k + 1]; ++q)
         m_column_row[m_column_end[m_row_column[q]]++] = k;
     m_next.assign(m_row_begin.begin(), m_row_begin.end() - 1);
-    m_is_twin.assign(m_size, 0);
+    m_has_same_rows.assign(m_size, 0);
     for(int j = 0; j < m_size; ++j)
     {
       for(int p = m_column_begin[j]; p < m_column_begin[j + 1]; ++p)
         m_row_column[m_next[m_column_row[p]]++] = j;
-      m_is_twin[j] = m_parent[j] == j + 1 && m_column_begin[j + 1] - m_column_begin[j] ==
-                                               m_column_begin[j + 2] - m_column_begin[j + 1] + 1;
+      m_has_same_rows[j] =
+        m_parent[j] == j + 1 && m_column_begin[j + 1] - m_column_begin[j] ==
+                                  m_column_begin[j + 2] - m_column_begin[j + 1] + 1;
     }
   }
 
@@ -366,7 +367,7 @@ private:
   std::vector<Block> m_values, m_diagonal;
   // L: by columns, with the rows' columns besides
   std::vector<int> m_column_begin, m_column_row, m_row_begin, m_row_column;
-  std::vector<char> m_is_twin; // the next column has the same rows
+  std::vector<char> m_has_same_rows; // the next column has the same rows
   std::vector<Block> m_factor, m_inverse;
   std::vector<Block> m_row;
   std::vector<int> m_column_end;

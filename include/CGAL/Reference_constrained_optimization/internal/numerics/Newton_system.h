@@ -22,7 +22,7 @@ class Newton_system
 {
 public:
   // `variable` numbers the free vertices and is -1 elsewhere; `triples` are the elements, `pairs`
-  // variables that have a block without being in an element
+  // further pairs of variables that have a block
   void analyze(const std::vector<int>& variable,
                int number_of_variables,
                const std::vector<std::array<int, 3>>& triples,
@@ -55,19 +55,18 @@ public:
     m_matrix.add(m_first_pair + pair, a, b, block);
   }
 
-  // Solves for the right-hand side; the diagonal is shifted by a tiny part of its mean, which
-  // decides directions that no element resists. False if the factorization failed.
-  bool solve(const Eigen::VectorXd& right,
-             Eigen::VectorXd& solution,
-             Interruption* interruption = nullptr)
+  // Solves for the right-hand side; the diagonal is shifted by a small multiple of its mean, which makes
+  // the matrix regular in directions of zero curvature. False if the factorization failed.
+  bool
+  solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& solution, Interruption* interruption = nullptr)
   {
     const double mean = m_matrix.trace() / (2 * m_matrix.size());
-    for(const double part : {1e-9, 1e-5, 1e-2})
+    for(const double relative_shift : {1e-9, 1e-5, 1e-2})
     {
-      if(!m_matrix.factorize(part * mean, interruption))
+      if(!m_matrix.factorize(relative_shift * mean, interruption))
         continue;
-      m_matrix.solve(right, solution);
-      if(solution.allFinite() && right.dot(solution) > 0)
+      m_matrix.solve(rhs, solution);
+      if(solution.allFinite() && rhs.dot(solution) > 0)
         return true;
     }
     return false;

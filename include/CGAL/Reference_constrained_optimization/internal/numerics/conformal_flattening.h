@@ -19,7 +19,7 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // The least-squares conformal map of a disk of triangles (B. Levy et al., Least Squares Conformal
-// Maps for Automatic Texture Atlas Generation, 2002), with two vertices held.
+// Maps for Automatic Texture Atlas Generation, 2002), with two fixed vertices.
 //
 // With the edge opposite to corner i of a triangle as a complex number w_i in the triangle's plane,
 // and u_i the corner's place as another one, the map is conformal where sum w_i u_i = 0. Minimized is
@@ -51,7 +51,7 @@ public:
     assemble(triangles, shapes, u);
     if(!m_matrix.factorize(0))
       return false;
-    m_matrix.solve(m_right, m_solution);
+    m_matrix.solve(m_rhs, m_solution);
     if(!m_solution.allFinite())
       return false;
     for(int v = 0; v < n; ++v)
@@ -74,7 +74,7 @@ private:
                 const std::vector<Vector_2>& u)
   {
     m_matrix.set_zero();
-    m_right.setZero(2 * m_size);
+    m_rhs.setZero(2 * m_size);
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const Eigen::Matrix2d& s = shapes[t];
@@ -91,9 +91,9 @@ private:
         if(a >= 0 && b >= 0)
           m_matrix.add(3 * t + i, a, b, block);
         else if(a >= 0)
-          m_right.segment<2>(2 * a) -= block * u[x];
+          m_rhs.segment<2>(2 * a) -= block * u[x];
         else if(b >= 0)
-          m_right.segment<2>(2 * b) -= block.transpose() * u[v];
+          m_rhs.segment<2>(2 * b) -= block.transpose() * u[v];
       }
     }
   }
@@ -111,7 +111,7 @@ private:
   Block_LDLT m_matrix;
   std::vector<int> m_variable;
   std::vector<std::array<int, 2>> m_sides;
-  Eigen::VectorXd m_right, m_solution;
+  Eigen::VectorXd m_rhs, m_solution;
 };
 
 } // namespace internal

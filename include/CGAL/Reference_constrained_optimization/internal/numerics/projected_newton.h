@@ -32,20 +32,21 @@ namespace internal {
 // A problem has `triples` (elements), `rest_inverse`, `is_free` (per vertex), `shape(e, u)`, the edge
 // matrix of element e for coordinates u, and `corner_map(e, i)`, the matrix by which the i-th vertex
 // of element e moves when its coordinates do; `elements` gives value and derivatives of an element, by its
-// number or as a density for all. Added to the energy are `drift`, a Drift_terms, in triangles of the
-// vertices `carriers`, and `stencils`, a Stencil_terms; both for the displacement of vertices from
+// number or as a density for all. The energy contains the terms `drift`, a Drift_terms, in triangles of the
+// vertices `term_triangles`, and `stencils`, a Stencil_terms; both for the displacement of vertices from
 // `origin(v)`.
 class Projected_newton
 {
 public:
-  // may be given up between its steps, and within
+  // may be interrupted between its steps, and within them
   explicit Projected_newton(Interruption* interruption = nullptr) : m_interruption(interruption) {}
 
   struct Outcome
   {
     int steps = 0;
     double initial_energy = 0, final_energy = 0;
-    double promised = 0; // what the first step would gain, undamped, if the energy were quadratic
+    // the decrease that the quadratic model predicts for the undamped first step
+    double predicted_decrease = 0;
   };
 
   // numbers the unknowns of a problem and factorizes its pattern; `minimize` may then be called any
@@ -59,11 +60,12 @@ public:
       if(problem.is_free[i])
         m_variable[i] = m_size++;
     m_triples = problem.triples;
-    m_first_carrier = 0;
-    if(problem.carriers != problem.triples) // which then need no entries of their own
+    m_first_term_triangle = 0;
+    if(problem.term_triangles != problem.triples) // which then need no entries of their own
     {
-      m_first_carrier = int(m_triples.size());
-      m_triples.insert(m_triples.end(), problem.carriers.begin(), problem.carriers.end());
+      m_first_term_triangle = int(m_triples.size());
+      m_triples.insert(m_triples.end(), problem.term_triangles.begin(),
+                       problem.term_triangles.end());
     }
     std::vector<std::array<int, 2>> pairs;
     m_first_pair.clear();
@@ -76,17 +78,17 @@ public:
     }
     if(m_size > 0)
       m_system.analyze(m_variable, m_size, m_triples, pairs);
-    m_right.resize(2 * m_size);
+    m_rhs.resize(2 * m_size);
   }
 
-  // Adds to the Hessian of every element this part of its trace, on the diagonal. Energies that do not
-  // change with scale have soft directions, along which a step would be far too long; a resistance to
-  // strain leaves the long ways open that neighbours go together.
-  void set_strain_resistance(double part) { m_strain_resistance = part; }
+  // Adds to the Hessian of every element this multiple of its trace, on the diagonal. Energies that are
+  // invariant to scale have directions of small curvature, along which a step would be far too long; this
+  // regularization penalizes strain only, so that neighbours may still move a long way together.
+  void set_strain_regularization(double factor) { m_strain_regularization = factor; }
 
-  // `u` is changed in place. Stops after `maximum_steps`, or when a step promises to lower the
-  // energy by less than `tolerance` times what it would be if all elements were like the best: a few
-  // that nothing can open may own the sum.
+  // `u` is changed in place. Stops after `maximum_steps`, or when the predicted decrease is less than
+  // `tolerance` times the energy that all elements would have with the density of the best: a few that
+  // cannot be improved may dominate the sum.
   template <typename Problem, typename Elements>
   Outcome minimize(const Problem& problem,
                    const Elements& elements,
@@ -105,13 +107,13 @@ public:
     for(int step = 0; step < maximum_steps; ++step)
     {
       check(m_interruption);
-      if(!m_system.solve(m_right, m_direction, m_interruption))
+      if(!m_system.solve(m_rhs, m_direction, m_interruption))
         break;
       check(m_interruption);
       if(step == 0)
-        outcome.promised = 0.5 * m_right.dot(m_direction);
+        outcome.predicted_decrease = 0.5 * m_rhs.dot(m_direction);
       const bool is_safe = damp(problem, u);
-      const double decrease = m_right.dot(m_direction);
+      const double decrease = m_rhs.dot(m_direction);
       if(!(decrease > tolerance * m_scale))
         break;
 
@@ -131,11 +133,11 @@ public:
       }
       if(!found)
         break;
-      const double gained = energy - trial;
+      const double actual_decrease = energy - trial;
       u = moved;
       energy = outcome.final_energy = trial;
       ++outcome.steps;
-      if(step + 1 == maximum_steps || gained < tolerance * m_scale)
+      if(step + 1 == maximum_steps || actual_decrease < tolerance * m_scale)
         break;
       check(m_interruption);
       assemble(problem, elements, u);
@@ -144,7 +146,7 @@ public:
   }
 
 private:
-  // of an element by its number, or of a density
+  // of an element by its index, or of a density
   template <typename Elements>
   static auto value_of(const Elements& elements, std::size_t e, const Eigen::Matrix2d& J, int)
     -> decltype(elements.value(e, J))
@@ -191,11 +193,11 @@ private:
     return sum;
   }
 
-  // negative beyond the other surface, where the barrier is not felt
+  // negative beyond the other surface, where the barrier is zero
   template <typename Problem, typename Term>
   static double distance(const Problem& problem, const Term& term, const std::vector<Vector_2>& u)
   {
-    const std::array<int, 3>& t = problem.carriers[term.triangle];
+    const std::array<int, 3>& t = problem.term_triangles[term.triangle];
     double d = term.distance;
     for(int k = 0; k < 3; ++k)
       d += term.rows[k].dot(u[t[k]] - problem.origin(t[k]));
@@ -215,7 +217,7 @@ private:
   double assemble(const Problem& problem, const Elements& elements, const std::vector<Vector_2>& u)
   {
     m_system.set_zero();
-    m_right.setZero();
+    m_rhs.setZero();
     double sum = 0, least = std::numeric_limits<double>::infinity();
     const auto add = [&](double value) {
       sum += value;
@@ -236,7 +238,7 @@ private:
         continue;
       }
       add(derivatives_of(elements, e, J, gradient, hessian, 0));
-      hessian.diagonal().array() += m_strain_resistance * hessian.trace();
+      hessian.diagonal().array() += m_strain_regularization * hessian.trace();
 
       // dJ = corner_map * du_i * w_i^T, with w_i the rows that belong to vertex i: `motion`
       // in the entries of J
@@ -254,11 +256,11 @@ private:
         const int b = variable[j], i = (j + 2) % 3, a = variable[i];
         if(b < 0)
           continue;
-        m_right.segment<2>(2 * b) -= motion[j].transpose() * gradient;
-        const Eigen::Matrix<double, 4, 2> bent = hessian * motion[j];
-        m_system.add_diagonal(b, motion[j].transpose() * bent);
+        m_rhs.segment<2>(2 * b) -= motion[j].transpose() * gradient;
+        const Eigen::Matrix<double, 4, 2> hessian_motion = hessian * motion[j];
+        m_system.add_diagonal(b, motion[j].transpose() * hessian_motion);
         if(a >= 0)
-          m_system.add_side(int(e), i, a, b, motion[i].transpose() * bent);
+          m_system.add_side(int(e), i, a, b, motion[i].transpose() * hessian_motion);
       }
     }
     m_scale = least * double(problem.triples.size());
@@ -283,7 +285,7 @@ private:
         const int a = variable(term.vertices[i]);
         if(a >= 0)
         {
-          m_right.segment<2>(2 * a) -= gradient.template segment<2>(2 * i);
+          m_rhs.segment<2>(2 * a) -= gradient.template segment<2>(2 * i);
           m_system.add_diagonal(a, hessian.template block<2, 2>(2 * i, 2 * i));
         }
         for(int j = 0; j < i; ++j, ++pair)
@@ -306,49 +308,49 @@ private:
     {
       const auto d = problem.drift.barrier().derivatives(distance(problem, term, u), term.bound);
       sum += d.value;
-      const std::array<int, 3>& t = problem.carriers[term.triangle];
+      const std::array<int, 3>& t = problem.term_triangles[term.triangle];
       for(int j = 0; j < 3; ++j)
       {
         const int i = (j + 2) % 3, a = m_variable[t[i]], b = m_variable[t[j]];
         if(b < 0)
           continue;
-        m_right.segment<2>(2 * b) -= d.first * term.rows[j];
+        m_rhs.segment<2>(2 * b) -= d.first * term.rows[j];
         m_system.add_diagonal(b, d.second * term.rows[j] * term.rows[j].transpose());
         if(a >= 0)
-          m_system.add_side(m_first_carrier + term.triangle, i, a, b,
+          m_system.add_side(m_first_term_triangle + term.triangle, i, a, b,
                             d.second * term.rows[i] * term.rows[j].transpose());
       }
     }
     return sum;
   }
 
-  // Shortens the motion of the vertices of elements that would collapse on the way, so that these few
-  // do not hold back all others, unless little of the descent would remain. Returns whether a whole step
-  // is known to let none collapse.
+  // Damps the motion of the vertices of elements that would collapse, so that the step length is not
+  // determined by a few elements, unless little of the descent would remain. Returns whether no element
+  // collapses in a full step.
   template <typename Problem>
   bool damp(const Problem& problem, const std::vector<Vector_2>& u)
   {
     m_undamped = m_direction;
     bool is_safe = false;
-    const int maximum_passes = 3; // motions that are shortened unequally may collapse others
+    const int maximum_passes = 3; // unequal damping may make others collapse
     for(int pass = 0; pass < maximum_passes && !is_safe; ++pass)
     {
-      m_part.assign(m_size, 1.);
+      m_damping.assign(m_size, 1.);
       is_safe = true;
       for_each_collapse(problem, u, [&](std::size_t e, double time) {
-        const double part = 0.9 * time;
-        if(!(part < 1))
+        const double factor = 0.9 * time;
+        if(!(factor < 1))
           return;
         is_safe = false;
         for(const int v : problem.triples[e])
           if(m_variable[v] >= 0)
-            m_part[m_variable[v]] = (std::min)(m_part[m_variable[v]], part);
+            m_damping[m_variable[v]] = (std::min)(m_damping[m_variable[v]], factor);
       });
       if(!is_safe)
         for(int i = 0; i < m_size; ++i)
-          m_direction.segment<2>(2 * i) *= m_part[i];
+          m_direction.segment<2>(2 * i) *= m_damping[i];
     }
-    if(m_right.dot(m_direction) > 0.1 * m_right.dot(m_undamped))
+    if(m_rhs.dot(m_direction) > 0.1 * m_rhs.dot(m_undamped))
       return is_safe;
     m_direction = m_undamped;
     return false;
@@ -362,7 +364,7 @@ private:
     return step;
   }
 
-  // calls visit(e, t) with the part t of the motion at which element e collapses
+  // calls visit(e, t) with the fraction t of the motion at which element e collapses
   template <typename Problem, typename Visit>
   void for_each_collapse(const Problem& problem,
                          const std::vector<Vector_2>& u,
@@ -375,7 +377,7 @@ private:
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
     {
       const Eigen::Matrix2d shape = problem.shape(e, u);
-      // inverted already, or as good as: the density pushes it back, and may be trusted with that
+      // inverted already, or nearly: the density is finite there, and increases further on
       const double flat = 1e-3;
       const double area = shape.determinant();
       if(!(area > flat * shape.squaredNorm()))
@@ -391,15 +393,16 @@ private:
 
   Interruption* m_interruption;
   int m_size = 0;
-  int m_first_carrier = 0;                   // number of the first carrier among the triples
+  // position of the first triangle of the barrier's terms among the triples
+  int m_first_term_triangle = 0;
   std::vector<std::array<int, 3>> m_triples; // of the system
   std::vector<int> m_first_pair;             // per stencil
-  double m_strain_resistance = 0;
+  double m_strain_regularization = 0;
   double m_scale = 0; // of the energy, for tolerances
   Newton_system m_system;
   std::vector<int> m_variable;
-  Eigen::VectorXd m_right, m_direction, m_undamped;
-  std::vector<double> m_part; // per variable: what remains of its motion
+  Eigen::VectorXd m_rhs, m_direction, m_undamped;
+  std::vector<double> m_damping; // per variable: the factor of its motion
 };
 
 } // namespace internal

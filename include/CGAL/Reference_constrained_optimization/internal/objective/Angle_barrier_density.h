@@ -18,10 +18,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Densities (Element_densities) with a barrier on top on the angles of the elements that are judged by them: each angle a adds W exp(k (t - a)), t being the
-// target, in degrees, k the steepness and W the element's density at rest. The rest triangle is equilateral
-// or as good as: angles are taken from the Jacobian. Beyond an exponent of 6 the exponential goes on as its second-order Taylor
-// polynomial, so that a sharp triangle does not own the sum; angles far above the target add nothing.
+// Densities (Element_densities) with a barrier on the angles of the elements that have this criterion: each
+// angle a adds W exp(k (t - a)), t being the target, in degrees, k the steepness and W the element's
+// density at rest. The rest triangle is treated as equilateral: angles are computed from the Jacobian.
+// Beyond an exponent of 6 the exponential is continued by its second-order Taylor polynomial, so that a
+// single sharp triangle does not dominate the sum; angles far above the target add nothing.
 template <typename Density>
 class Angle_barrier_density
 {
@@ -45,7 +46,7 @@ public:
   double value(const Element_set::Element& element, const Eigen::Matrix2d& J) const
   {
     double sum = m_density.value(element, J);
-    if(!element.is_judged)
+    if(!element.has_criterion)
       return sum;
     const Angles angles(J * m_equilateral);
     const double weight = element.weight * m_weights[element.term];
@@ -61,7 +62,7 @@ public:
                                Eigen::Matrix4d& hessian) const
   {
     double sum = m_density.projected_derivatives(element, J, gradient, hessian);
-    if(!element.is_judged)
+    if(!element.has_criterion)
       return sum;
     const Angles angles(J * m_equilateral);
     const double weight = element.weight * m_weights[element.term];
@@ -74,7 +75,8 @@ public:
       const Eigen::Map<const Eigen::Vector4d> d(by_jacobian.data());
       sum += b.value;
       gradient += b.first * d;
-      hessian += (b.second * d) * d.transpose(); // the rest of the second derivative is left out
+      // the other part of the second derivative is dropped
+      hessian += (b.second * d) * d.transpose();
     }
     return sum;
   }
@@ -93,7 +95,7 @@ private:
         lengths{a.norm(), b.norm(), c.norm()}
     {}
 
-    // quick to have; that of a side without length is 1
+    // cheaper than the angle; 1 for a side without length
     double cosine(int i) const
     {
       const double product = i == 0 ? a.dot(b) : (i == 1 ? -a.dot(c) : b.dot(c));
@@ -111,11 +113,11 @@ private:
     {
       Eigen::Matrix2d d;
       if(i == 0)
-        d << -turn(a), turn(b);
+        d << -direction_derivative(a), direction_derivative(b);
       else if(i == 1)
-        d << turn(a) + turn(c), -turn(c);
+        d << direction_derivative(a) + direction_derivative(c), -direction_derivative(c);
       else
-        d << -turn(c), turn(c) - turn(b);
+        d << -direction_derivative(c), direction_derivative(c) - direction_derivative(b);
       return degrees_per_radian * d;
     }
 
@@ -125,7 +127,7 @@ private:
       return degrees_per_radian * std::atan2(p(0) * q(1) - p(1) * q(0), p.dot(q));
     }
     // the derivative of a vector's direction by the vector
-    static Vector_2 turn(const Vector_2& p)
+    static Vector_2 direction_derivative(const Vector_2& p)
     {
       const double square = p.squaredNorm();
       return square > 0 ? Vector_2(-p(1) / square, p(0) / square) : Vector_2(0, 0);

@@ -107,7 +107,7 @@ auto element_densities(const Energy& energy)
   return make_element_densities(tuple_of_densities(energy));
 }
 
-// The elements of a patch as Newton's method asks for them, by number.
+// The elements of a patch by index, for Newton's method.
 template <typename Density>
 struct Patch_elements
 {

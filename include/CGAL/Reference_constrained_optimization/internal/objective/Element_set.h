@@ -28,22 +28,21 @@ public:
   struct Element
   {
     std::array<int, 3> vertices;
-    bool is_judged;  // by the energy's criterion for elements
-    bool is_in_quad; // its face has more corners than it
-    short term = 0;  // the summand of the energy that it is of
+    bool has_criterion; // the energy has a criterion for elements
+    bool is_in_quad;    // its face has more corners than it
+    short term = 0;     // the summand of the energy
     double weight = 1;
     Eigen::Matrix<double, 2, 2, Eigen::DontAlign> rest_inverse; // packed: there are many
   };
 
-  // of the faces that are marked; of all if there are no marks. Lengths of rest triangles are told in
-  // another unit: `unit` of these make one of the mesh.
+  // of the marked faces; of all if none is marked. Lengths of rest triangles are divided by `unit`.
   template <typename Energy, typename Context>
   Element_set(const Energy& energy,
               const Context& context,
               const std::vector<char>& is_in_range = std::vector<char>(),
               double unit = 1)
   {
-    // calls visit(summand, term, weight) for each that has elements and counts
+    // calls visit(summand, term, weight) for each that has elements and a positive weight
     const auto for_each_term = [&](const auto& visit) {
       short term = 0;
       for_each_summand(energy, 1, [&](const auto& summand, double weight) {
@@ -81,7 +80,7 @@ public:
         "energy: the mesh has no element; stencils alone do not keep faces in shape");
   }
 
-  // by what the worst elements are judged
+  // the criterion for the worst elements
   Element_criterion criterion() const { return m_criterion; }
 
   // the sum of the weights of the elements of a term
@@ -122,7 +121,7 @@ private:
       element.vertices[i] = context.vertex(f, e.corners[i]);
     }
     element.rest_inverse = (e.rest / unit).inverse();
-    element.is_judged = criterion != Element_criterion::none;
+    element.has_criterion = criterion != Element_criterion::none;
     element.is_in_quad = context.degree(f) > 3;
     element.term = term;
     element.weight = weight * e.weight;

@@ -36,7 +36,7 @@ typedef Eigen::
   Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * largest_stencil, 3 * largest_stencil>
     Stencil_hessian;
 
-// The function of a summand with stencils, of which the hot loops know no type.
+// The function of a summand with stencils, with its type erased.
 class Stencil_function
 {
 public:
@@ -49,7 +49,7 @@ public:
                                        Stencil_hessian& hessian) const = 0;
 };
 
-// That of a model of the concept, in the coordinates of the caller.
+// The function of a model of the concept, in the user's coordinates.
 template <typename Energy>
 class Stencil_function_of : public Stencil_function
 {
@@ -60,7 +60,7 @@ class Stencil_function_of : public Stencil_function
   typedef Eigen::Matrix<double, 3 * k, 3 * k> Hessian;
 
 public:
-  // `step`: a length, of differences, for energies without derivatives
+  // `step`: the length of finite differences, for energies without derivatives
   Stencil_function_of(const Energy& energy, const Frame& frame, double step)
     : m_energy(energy),
       m_frame(frame),
@@ -91,7 +91,7 @@ private:
   {
     Points result;
     for(int i = 0; i < k; ++i)
-      result[i] = m_frame.to_caller(points[i]);
+      result[i] = m_frame.to_user(points[i]);
     return result;
   }
 
@@ -107,7 +107,7 @@ private:
     return energy.projected_derivatives(stencil, points, gradient, hessian);
   }
 
-  // by differences of values, without negative eigenvalues
+  // by finite differences, without negative eigenvalues
   template <typename E>
   double derivatives(const E& energy,
                      std::size_t stencil,
@@ -238,9 +238,9 @@ private:
     constexpr int k = Energy::stencil_size;
     std::vector<Energy_stencil<k>> stencils;
     energy.append_stencils(context, stencils);
-    const double part = 1e-4; // of a mean edge, where differences are taken
+    const double relative_step = 1e-4; // of finite differences, relative to the mean edge length
     m_functions.push_back(std::make_shared<Stencil_function_of<Energy>>(
-      energy, frame, part * context.mean_edge_length()));
+      energy, frame, relative_step * context.mean_edge_length()));
     for(std::size_t i = 0; i < stencils.size(); ++i)
     {
       const Energy_stencil<k>& s = stencils[i];

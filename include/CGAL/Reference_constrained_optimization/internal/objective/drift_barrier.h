@@ -9,23 +9,26 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What a sample of one surface adds to the energy at a distance r from the other one: with
-// u = ((r - a) / (b - a))^2 for a bound b it is w u^2 / (1 - u), and nothing below a, a part of b. It
-// is continued quadratically in u beyond u = 0.6: it is soft, for a stiffer one would hold up Newton's
-// method, and finite for inputs beyond the bound. Beyond `last_part` b no step may take a sample.
+// The energy of a sample of one surface at a distance r from the other one: with u = ((r - a) / (b - a))^2
+// for a bound b it is w u^2 / (1 - u), and zero below a, a fraction of b. It is continued quadratically in
+// u beyond u = 0.6: it is soft, since a stiffer one would slow down Newton's method, and finite for inputs
+// beyond the bound. No step may move a sample beyond `limit_factor` b.
 class Drift_barrier
 {
 public:
   // `weight` is an energy
   explicit Drift_barrier(double weight = 0) : m_weight(weight) {}
 
-  static constexpr double free_part = 0.6, last_part = 1.1;
+  static constexpr double activation_factor = 0.6, limit_factor = 1.1;
 
-  static bool is_felt(double distance, double bound) { return distance > free_part * bound; }
+  static bool is_active(double distance, double bound)
+  {
+    return distance > activation_factor * bound;
+  }
 
   double value(double distance, double bound) const
   {
-    const double x = (distance - free_part * bound) / ((1 - free_part) * bound);
+    const double x = (distance - activation_factor * bound) / ((1 - activation_factor) * bound);
     return x > 0 ? m_weight * jet(x * x).value : 0;
   }
 
@@ -38,8 +41,8 @@ public:
   Derivatives derivatives(double distance, double bound) const
   {
     Derivatives d;
-    const double k = 1 / ((1 - free_part) * bound);
-    const double x = k * (distance - free_part * bound);
+    const double k = 1 / ((1 - activation_factor) * bound);
+    const double x = k * (distance - activation_factor * bound);
     if(!(x > 0))
       return d;
     const Derivatives f = jet(x * x);

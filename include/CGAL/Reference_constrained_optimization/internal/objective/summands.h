@@ -16,7 +16,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What an energy has: elements, stencils, or both.
+// The terms of an energy: elements, stencils, or both.
 template <typename Energy, typename = void>
 struct Has_stencils : std::false_type
 {};
@@ -48,7 +48,7 @@ void for_each_summand(const Sum_energy<Energy...>& sum, double weight, const Vis
     sum.energies());
 }
 
-// by what the worst elements of an energy are judged
+// the criterion for the worst elements of an energy
 template <typename Energy, typename = void>
 struct Criterion_of
 {
@@ -59,7 +59,7 @@ struct Criterion_of<Energy, std::void_t<decltype(Energy::element_criterion)>>
 {
   static constexpr Element_criterion value = Energy::element_criterion;
 };
-// of a sum: that of a summand that counts
+// of a sum: that of a summand that has one
 template <typename Energy>
 Element_criterion criterion_of(const Energy& energy)
 {

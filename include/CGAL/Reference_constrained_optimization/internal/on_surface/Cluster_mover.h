@@ -18,19 +18,21 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Vertices that all but coincide, as marching cubes leave them where a surface passes a corner of the
-// grid: connected by edges that are short beside others at their ends, and far from what is around.
+// Vertices that nearly coincide, as marching cubes produce them where a surface passes a corner of the
+// grid: connected by edges that are short compared with others at their ends, and far from all other
+// vertices.
 template <typename PointAccess>
 std::vector<std::vector<int>> vertex_clusters(const Indexed_mesh& mesh, const PointAccess& point)
 {
-  const double short_part = 0.01, largest_part = 0.1;
+  const double short_fraction = 0.01, largest_fraction = 0.1;
   const auto length = [&](int c) { return (point(mesh.target(c)) - point(mesh.source(c))).norm(); };
   std::vector<double> longest(mesh.number_of_vertices(), 0);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     for(const int v : {mesh.source(c), mesh.target(c)})
       longest[v] = (std::max)(longest[v], length(c));
   const auto is_short = [&](int c) {
-    return length(c) < short_part * (std::max)(longest[mesh.source(c)], longest[mesh.target(c)]);
+    return length(c) <
+           short_fraction * (std::max)(longest[mesh.source(c)], longest[mesh.target(c)]);
   };
   std::vector<char> is_candidate(mesh.number_of_vertices(), 0);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
@@ -47,7 +49,7 @@ std::vector<std::vector<int>> vertex_clusters(const Indexed_mesh& mesh, const Po
   };
   std::vector<std::vector<int>> clusters;
   std::vector<int> origin(mesh.number_of_vertices(),
-                          -1); // of those that are in a cluster: its first
+                          -1); // first vertex of the cluster, for vertices in one
   for(int start = 0; start < mesh.number_of_vertices(); ++start)
   {
     if(!is_candidate[start] || origin[start] >= 0)
@@ -62,25 +64,25 @@ std::vector<std::vector<int>> vertex_clusters(const Indexed_mesh& mesh, const Po
           cluster.push_back(w);
         }
       });
-    // the rim of a fan of needles is a chain of short edges, too
-    double size = 0, way_out = std::numeric_limits<double>::infinity();
+    // excludes chains of short edges, as the rim of a fan of needles
+    double size = 0, nearest_distance = std::numeric_limits<double>::infinity();
     for(const int v : cluster)
     {
       size = (std::max)(size, (point(v) - point(start)).norm());
       for_each_edge(v, [&](int c, int w) {
         if(origin[w] != start)
-          way_out = (std::min)(way_out, length(c));
+          nearest_distance = (std::min)(nearest_distance, length(c));
       });
     }
-    if(size < largest_part * way_out)
+    if(size < largest_fraction * nearest_distance)
       clusters.push_back(std::move(cluster));
   }
   return clusters;
 }
 
-// Takes the vertices of clusters apart, to the barycenters of their neighbours, with those around at
-// equal distances. Derivatives are no guide there: those of elements as small as a cluster exceed all
-// others by as many orders of magnitude, and Newton steps open it by a small factor each.
+// Separates the vertices of clusters: they move to the barycenters of their neighbours, with those outside
+// of the cluster at equal distances. Newton's method is inefficient there: derivatives of elements as small
+// as a cluster exceed all others by orders of magnitude, and each step enlarges it by a small factor only.
 class Cluster_mover
 {
 public:
@@ -90,11 +92,11 @@ public:
   bool propose(const Patch& patch, const Patch_samples&, const Density&)
   {
     const auto start = std::chrono::steady_clock::now();
-    m_way.assign(patch.vertices.size(), Vector_3::Zero());
+    m_displacement.assign(patch.vertices.size(), Vector_3::Zero());
     bool moves = false;
     for(const std::vector<int>& cluster : vertex_clusters(
-          patch.polygons, [&](int v) -> const Vector_3& { return patch.placed[v].position; }))
-      moves = open(patch, cluster) || moves;
+          patch.polygons, [&](int v) -> const Vector_3& { return patch.located[v].position; }))
+      moves = separate(patch, cluster) || moves;
     m_optimization_time = seconds_since(start);
     return moves;
   }
@@ -105,21 +107,21 @@ public:
     return false;
   }
 
-  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  bool displaced_vertex(const Patch& patch, int v, double t, Located_vertex& result) const
   {
-    return step_on_surface(m_reference, patch.placed[v], t * m_way[v], result);
+    return step_on_surface(m_reference, patch.located[v], t * m_displacement[v], result);
   }
 
-  double motion_length(int v) const { return m_way[v].norm(); }
+  double displacement_length(int v) const { return m_displacement[v].norm(); }
   double optimization_time() const { return m_optimization_time; }
 
 private:
   static bool may_move(const Patch& patch, int v) { return patch.is_free[v] && !patch.slides(v); }
 
-  bool open(const Patch& patch, const std::vector<int>& cluster)
+  bool separate(const Patch& patch, const std::vector<int>& cluster)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const Vector_3& center = patch.placed[cluster.front()].position;
+    const Vector_3& center = patch.located[cluster.front()].position;
     const auto around = [&](int v) { // each neighbour twice, at the border once
       std::vector<int> result;
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
@@ -135,12 +137,12 @@ private:
     };
     double radius = std::numeric_limits<double>::infinity();
     Vector_3 normal = Vector_3::Zero();
-    const auto vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return patch.located[v]; };
     for(const int v : cluster)
     {
       for(const int w : around(v))
         if(!is_in(w))
-          radius = (std::min)(radius, (patch.placed[w].position - center).norm());
+          radius = (std::min)(radius, (patch.located[w].position - center).norm());
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         normal += face_normal(mesh, vertex, mesh.corner_face[mesh.vertex_corners[k]]);
     }
@@ -159,16 +161,16 @@ private:
         const std::vector<int> neighbours = around(v);
         Vector_3 sum = Vector_3::Zero();
         for(const int w : neighbours)
-          sum += is_in(w) ? m_way[w]
-                          : Vector_3(radius * (patch.placed[w].position - center).normalized());
-        m_way[v] = sum / double(neighbours.size());
-        m_way[v] -= m_way[v].dot(normal) * normal;
+          sum += is_in(w) ? m_displacement[w]
+                          : Vector_3(radius * (patch.located[w].position - center).normalized());
+        m_displacement[v] = sum / double(neighbours.size());
+        m_displacement[v] -= m_displacement[v].dot(normal) * normal;
       }
     return found;
   }
 
   const Reference_surface& m_reference;
-  std::vector<Vector_3> m_way; // per vertex
+  std::vector<Vector_3> m_displacement; // per vertex
   double m_optimization_time = 0;
 };
 

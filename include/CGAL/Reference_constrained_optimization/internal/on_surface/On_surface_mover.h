@@ -10,7 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/objective/Element_densities.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/crease_direction.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference/face_towards.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_in_direction.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_terms.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
@@ -31,14 +31,14 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A patch's energy as a function of the coordinates of each vertex in its own tangent plane, to first
-// order: vertex i is at p_i + T_i u_i, and an element's shape is seen in the plane of the element. The
-// second column of T_i is zero for vertices that slide along a line.
+// order: vertex i is at p_i + T_i u_i, and an element's shape is that in its own plane. The second
+// column of T_i is zero for vertices that slide along a line.
 struct Tangent_problem
 {
   std::vector<std::array<int, 3>> triples;
   std::vector<Eigen::Matrix2d> rest_inverse;
-  std::vector<char> is_free;                // per vertex
-  std::vector<std::array<int, 3>> carriers; // of the drift barrier's terms
+  std::vector<char> is_free;                      // per vertex
+  std::vector<std::array<int, 3>> term_triangles; // of the drift barrier's terms
   Drift_terms drift;
   Stencil_terms stencils;
   static Vector_2 origin(int) { return Vector_2::Zero(); }
@@ -58,20 +58,21 @@ struct Tangent_problem
   const Eigen::Matrix2d& corner_map(std::size_t e, int i) const { return corner_maps[3 * e + i]; }
 };
 
-// The resistance to strain after a step of which that part was taken: the next step may be bolder if
-// nearly all of it was, and must be more careful if much of it was cut.
-constexpr double largest_resistance = 0.05;
-inline double adapted_resistance(double resistance, double taken)
+// The strain regularization after a step of which the given fraction was accepted: smaller if that is
+// nearly all of it, larger if much of it was cut.
+constexpr double largest_regularization = 0.05;
+inline double adapted_regularization(double regularization, double accepted_fraction)
 {
-  const double smallest_resistance = 0.001;
-  if(taken > 0.95)
-    return (std::max)(smallest_resistance, 0.25 * resistance);
-  return taken < 0.8 ? (std::min)(6 * largest_resistance, 2.5 * resistance) : resistance;
+  const double smallest_regularization = 0.001;
+  if(accepted_fraction > 0.95)
+    return (std::max)(smallest_regularization, 0.25 * regularization);
+  return accepted_fraction < 0.8 ? (std::min)(6 * largest_regularization, 2.5 * regularization)
+                                 : regularization;
 }
 
 // Moves the vertices of a patch directly along R: Newton steps in the tangent planes, then back to R
-// by the local closest point. Much cheaper than a flattened patch, as accurate where steps are
-// small; but what is folded stays folded.
+// by the local closest point. Much cheaper than flattening, and as accurate for small steps; but folds are
+// not removed.
 class On_surface_mover
 {
 public:
@@ -85,7 +86,7 @@ public:
   {}
 
   // of the first step of the patches to come; see Projected_newton
-  void set_strain_resistance(double part) { m_first_resistance = part; }
+  void set_strain_regularization(double factor) { m_initial_regularization = factor; }
 
   template <typename Density>
   bool propose(const Patch& patch, const Patch_samples& samples, const Density& density)
@@ -100,13 +101,13 @@ public:
       m_problem.triples.push_back(e.vertices);
       m_problem.rest_inverse.push_back(e.rest_inverse);
     }
-    m_problem.carriers = drift_carriers(patch, samples);
+    m_problem.term_triangles = drift_term_triangles(patch, samples);
     m_problem.stencils.collect(patch, [](int) -> Tangent_frame { return Tangent_frame::Zero(); });
     check(m_interruption);
     m_newton.analyze(m_problem);
     check(m_interruption);
-    m_strain_resistance = m_first_resistance;
-    m_is_held.assign(patch.vertices.size(), samples.are_bounded());
+    m_strain_regularization = m_initial_regularization;
+    m_stays_on_crease.assign(patch.vertices.size(), samples.are_bounded());
     const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
@@ -121,27 +122,27 @@ public:
   {
     const auto start = std::chrono::steady_clock::now();
     adapt(patch, steps);
-    // what went off its crease without much harm may go on
+    // vertices that could leave their crease may continue to do so
     for(std::size_t v = 0; v < steps.size(); ++v)
-      m_is_held[v] = samples.are_bounded() && steps[v] < 0.5;
+      m_stays_on_crease[v] = samples.are_bounded() && steps[v] < 0.5;
     const bool proposes = step(patch, samples, density);
     m_optimization_time += seconds_since(start);
     return proposes;
   }
 
-  // the vertex after the part t of its way; false if R is not found there
-  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  // the vertex after the fraction t of its displacement; false if there is no point of R
+  bool displaced_vertex(const Patch& patch, int v, double t, Located_vertex& result) const
   {
-    const Placed_vertex& from = patch.placed[v];
+    const Located_vertex& from = patch.located[v];
     if(patch.slides(v))
       return slide(patch, v, t * m_motion[v](0), m_reference, result);
     return step_on_surface(m_reference, from, t * (m_frames[v] * m_motion[v]), result);
   }
 
-  double motion_length(int v) const { return m_motion[v].norm(); }
+  double displacement_length(int v) const { return m_motion[v].norm(); }
   double optimization_time() const { return m_optimization_time; }
-  // the gain that the last proposal promised
-  double promised() const { return m_promised; }
+  // the predicted decrease of the last proposal
+  double predicted_decrease() const { return m_predicted_decrease; }
 
 private:
   // Newton steps from where the vertices are now
@@ -150,49 +151,50 @@ private:
   {
     linearize(patch, samples, density);
     m_motion.assign(patch.vertices.size(), Vector_2::Zero());
-    m_newton.set_strain_resistance(m_strain_resistance);
+    m_newton.set_strain_regularization(m_strain_regularization);
     const Projected_newton::Outcome outcome = m_newton.minimize(
       m_problem, Patch_elements<Density>{density, patch.elements}, m_motion, m_newton_steps, 1e-8);
-    m_promised = outcome.promised;
+    m_predicted_decrease = outcome.predicted_decrease;
     return outcome.steps > 0;
   }
 
-  // the next step may be bolder if nearly all of the last one was taken, and must be more careful if
-  // much of it was cut
+  // reduces the regularization if nearly all of the last step was accepted, increases it if much was cut
   void adapt(const Patch& patch, const std::vector<double>& steps)
   {
-    double taken = 0;
+    double accepted_fraction = 0;
     for(std::size_t v = 0; v < steps.size(); ++v)
-      taken += patch.is_free[v] ? steps[v] : 0;
-    taken /= patch.number_of_free_vertices;
-    m_strain_resistance = adapted_resistance(m_strain_resistance, taken);
+      accepted_fraction += patch.is_free[v] ? steps[v] : 0;
+    accepted_fraction /= patch.number_of_free_vertices;
+    m_strain_regularization = adapted_regularization(m_strain_regularization, accepted_fraction);
   }
 
   template <typename Density>
   void linearize(const Patch& patch, const Patch_samples& samples, const Density& density)
   {
     find_planes(patch);
-    find_descent(patch, density);
+    find_negative_gradients(patch, density);
     m_frames.resize(patch.vertices.size());
     for(std::size_t v = 0; v < patch.vertices.size(); ++v)
       if(patch.slides(int(v)))
-        m_frames[v] << patch.lines->tangent(patch.placed[v].on_line), Vector_3::Zero();
+        m_frames[v] << patch.lines->tangent(patch.located[v].on_line), Vector_3::Zero();
       else
       {
-        // only R's own planes make the model one of first order; where several meet it is the one
-        // that the vertex is about to enter
-        const Surface_point& on_reference = patch.placed[v].on_reference;
-        if(m_is_held[v] && patch.is_free[v])
+        // only with R's own planes the model is of first order; where several meet it is the one that the
+        // vertex enters
+        const Surface_point& on_reference = patch.located[v].on_reference;
+        if(m_stays_on_crease[v] && patch.is_free[v])
         {
-          const Vector_3 along = crease_direction(m_reference, on_reference, m_descent[v]);
+          const Vector_3 along =
+            crease_direction(m_reference, on_reference, m_negative_gradient[v]);
           if(!along.isZero(0))
           {
             m_frames[v] << along, Vector_3::Zero();
             continue;
           }
         }
-        const int face = patch.is_free[v] ? face_towards(m_reference, on_reference, m_descent[v])
-                                          : on_reference.face;
+        const int face = patch.is_free[v]
+                           ? face_in_direction(m_reference, on_reference, m_negative_gradient[v])
+                           : on_reference.face;
         m_frames[v] = tangent_frame(m_reference.face_normal(face));
       }
     m_problem.corner_maps.resize(3 * patch.elements.size());
@@ -205,23 +207,23 @@ private:
     m_problem.stencils.collect(patch, frame);
   }
 
-  // the planes of the elements, and their shapes there
+  // the planes of the elements, and their shapes in them
   void find_planes(const Patch& patch)
   {
     m_planes.clear();
     m_problem.shapes.clear();
     for(const Element_set::Element& e : patch.elements)
     {
-      const Placed_vertex* p[3];
+      const Located_vertex* p[3];
       for(int i = 0; i < 3; ++i)
-        p[i] = &patch.placed[e.vertices[i]];
+        p[i] = &patch.located[e.vertices[i]];
       const Vector_3 a = p[1]->position - p[0]->position, b = p[2]->position - p[0]->position;
       const Vector_3 outward = p[0]->normal + p[1]->normal + p[2]->normal;
       Vector_3 normal = a.cross(b);
       if(normal.squaredNorm() > 1e-20 * a.squaredNorm() * b.squaredNorm())
         normal *= normal.dot(outward) < 0 ? -1 : 1;
       else
-        normal = outward; // no plane of its own
+        normal = outward; // degenerate
       m_planes.push_back(tangent_frame(normal));
       Eigen::Matrix2d shape;
       shape.col(0) = m_planes.back().transpose() * a;
@@ -232,11 +234,11 @@ private:
 
   // the negative gradient in space at the vertices that lie on vertices and edges of R
   template <typename Density>
-  void find_descent(const Patch& patch, const Density& density)
+  void find_negative_gradients(const Patch& patch, const Density& density)
   {
-    m_descent.assign(patch.vertices.size(), Vector_3::Zero());
+    m_negative_gradient.assign(patch.vertices.size(), Vector_3::Zero());
     const auto is_on_edge = [&](int v) {
-      return patch.is_free[v] && !(patch.placed[v].on_reference.barycentric.minCoeff() > 0);
+      return patch.is_free[v] && !(patch.located[v].on_reference.barycentric.minCoeff() > 0);
     };
     Eigen::Vector4d gradient;
     Eigen::Matrix4d unused;
@@ -251,26 +253,28 @@ private:
       const Eigen::Matrix2d by_jacobian = Eigen::Map<const Eigen::Matrix2d>(gradient.data());
       const Eigen::Matrix<double, 3, 2> by_edges =
         m_planes[e] * (by_jacobian * element.rest_inverse.transpose());
-      m_descent[t[0]] += by_edges.col(0) + by_edges.col(1);
-      m_descent[t[1]] -= by_edges.col(0);
-      m_descent[t[2]] -= by_edges.col(1);
+      m_negative_gradient[t[0]] += by_edges.col(0) + by_edges.col(1);
+      m_negative_gradient[t[1]] -= by_edges.col(0);
+      m_negative_gradient[t[2]] -= by_edges.col(1);
     }
-    m_problem.stencils.add_descent(m_descent);
+    m_problem.stencils.add_descent(m_negative_gradient);
   }
 
   const Reference_surface& m_reference;
   int m_newton_steps;
   Interruption* m_interruption;
-  double m_first_resistance = largest_resistance, m_strain_resistance = largest_resistance;
+  double m_initial_regularization = largest_regularization,
+         m_strain_regularization = largest_regularization;
   Projected_newton m_newton;
   Tangent_problem m_problem;
-  std::vector<Tangent_frame> m_frames; // per vertex
-  std::vector<Tangent_frame> m_planes; // per element
-  std::vector<Vector_3> m_descent;     // per vertex
-  std::vector<Vector_2> m_motion;      // per vertex, in its frame
-  std::vector<char> m_is_held;         // per vertex: it stays on the crease of R that it is on
+  std::vector<Tangent_frame> m_frames;       // per vertex
+  std::vector<Tangent_frame> m_planes;       // per element
+  std::vector<Vector_3> m_negative_gradient; // per vertex
+  std::vector<Vector_2> m_motion;            // per vertex, in its frame
+  // per vertex: whether it stays on the crease of R on which it is
+  std::vector<char> m_stays_on_crease;
   double m_optimization_time = 0;
-  double m_promised = 0;
+  double m_predicted_decrease = 0;
 };
 
 } // namespace internal

@@ -11,21 +11,21 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Takes a vertex along a tangent and back to R by the local closest point. A tangent leaves R slowly;
-// where it does not the surface ends, or turns away, and the answer is false.
+// Moves a vertex along a tangent and back to R by the local closest point. False where the distance to R is
+// not small compared with the step: the surface ends or bends there.
 inline bool step_on_surface(const Reference_surface& reference,
-                            const Placed_vertex& from,
-                            const Vector_3& way,
-                            Placed_vertex& result)
+                            const Located_vertex& from,
+                            const Vector_3& displacement,
+                            Located_vertex& result)
 {
-  const Vector_3 target = from.position + way;
-  const Surface_point foot = reference.descend(target, from.on_reference.face);
-  const Vector_3 normal = reference.normal(foot);
-  if((foot.position - target).squaredNorm() > 0.25 * way.squaredNorm() ||
+  const Vector_3 target = from.position + displacement;
+  const Surface_point projection = reference.local_closest(target, from.on_reference.face);
+  const Vector_3 normal = reference.normal(projection);
+  if((projection.position - target).squaredNorm() > 0.25 * displacement.squaredNorm() ||
      !(normal.dot(from.normal) > 0))
     return false;
-  result.on_reference = foot;
-  result.position = foot.position;
+  result.on_reference = projection;
+  result.position = projection.position;
   result.normal = normal;
   return true;
 }

@@ -14,11 +14,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A mesh as it is, every vertex with its point of a reference and the normal there: the state that
-// an optimization without free vertices would start from.
+// A mesh with the point of a reference and the normal there for every vertex: the initial state of an
+// optimization without free vertices.
 class Located_mesh
 {
-  // a state has elements, but what is measured here does not hang on them
+  // a state has elements, but the measures do not depend on them
   struct One_element_per_face
   {
     void
@@ -31,14 +31,14 @@ class Located_mesh
 public:
   Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference) : Located_mesh(copy, reference, 0)
   {
-    m_state.is_free.assign(copy.points.size(), 0); // nothing is moved onto the reference
+    m_state.is_free.assign(copy.points.size(), 0); // no vertex is moved
     Result unused;
-    place_on_reference<CGAL::Sequential_tag>(copy.points, m_surface, m_state, unused);
+    locate_on_reference<CGAL::Sequential_tag>(copy.points, m_surface, m_state, unused);
   }
 
-  const Placed_vertex& operator()(int v) const { return m_state.vertices[v]; }
+  const Located_vertex& operator()(int v) const { return m_state.vertices[v]; }
 
-  // turned round where it is oriented against the mesh
+  // reversed where it is oriented against the mesh
   const Reference_surface& reference() const { return m_surface; }
 
 private:

@@ -21,8 +21,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Whether Range is a range of face descriptors of Graph. Graph's traits are looked at only if Range
-// is a range at all.
+// Whether Range is a range of face descriptors of Graph. Graph's traits are only instantiated if Range is a
+// range.
 template <typename Range, typename Graph, typename = void>
 struct Is_face_range : std::false_type
 {};
@@ -35,7 +35,7 @@ struct Is_face_range<Range,
                         typename boost::graph_traits<Graph>::face_descriptor>
 {};
 
-// the range of all faces, of which nobody need be asked
+// the range of all faces
 struct All_faces
 {};
 

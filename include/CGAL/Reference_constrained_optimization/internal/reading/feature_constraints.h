@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference/line_chains.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/polyline_tracing.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
 
@@ -59,7 +59,7 @@ inline Line_edges feature_edges(const Indexed_mesh& triangles, const std::vector
   return edges;
 }
 
-// adds lines to what is constrained
+// adds lines to the constraints
 inline void constrain(const std::vector<char>& is_feature,
                       const Indexed_mesh& mesh,
                       Constraints& constraints,
@@ -107,11 +107,11 @@ inline std::vector<char> faces_on(const Optimization_state& state,
   return result;
 }
 
-// the corners of the mesh at whose edges it turns by less than 20 degrees
+// the corners of the mesh whose edges have a dihedral angle below 20 degrees
 inline std::vector<char> smooth_edges(const Optimization_state& state)
 {
   const Indexed_mesh& mesh = state.mesh;
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   const double cosine_of_turn = 0.94;
   std::vector<char> result(mesh.number_of_corners(), 0);
   for(int c = 0; c < mesh.number_of_corners(); ++c)
@@ -124,8 +124,8 @@ inline std::vector<char> smooth_edges(const Optimization_state& state)
   return result;
 }
 
-// Of a mesh that is not R itself, the edges that trace feature lines of R: sharp ones, whose ends and
-// middle lie at such lines. Per corner.
+// For a mesh that is not R itself, the edges along feature lines of R: those that are sharp and whose end
+// points and midpoint lie on such lines. Per corner.
 inline std::vector<char> traced_features(const Indexed_mesh& mesh,
                                          const std::vector<Vector_3>& positions,
                                          const Reference_surface& surface,
@@ -146,7 +146,7 @@ inline std::vector<char> traced_features(const Indexed_mesh& mesh,
   const auto distance = [&](const Vector_3& x) {
     return std::sqrt(tree.squared_distance(point(x)));
   };
-  // vertices that are on a line already, up to rounding
+  // vertices on a line, up to rounding
   std::vector<double> shortest(positions.size(), std::numeric_limits<double>::infinity());
   for(int c = 0; c < mesh.number_of_corners(); ++c)
   {

@@ -90,8 +90,8 @@ inline double cosine_between(const Vector_3& a, const Vector_3& b)
   return lengths > 0 ? a.dot(b) / lengths : 0;
 }
 
-// Where R passes a vertex within a distance more than once: its points of R on all sheets, the given one
-// first. Empty if there is one sheet only.
+// The closest points on all sheets of R within a distance of a vertex, the given one first. Empty if there
+// is only one sheet.
 inline std::vector<Surface_point> sheets_at(const Reference_surface& reference,
                                             const Vector_3& p,
                                             const Surface_point& found,
@@ -108,21 +108,21 @@ inline std::vector<Surface_point> sheets_at(const Reference_surface& reference,
   return sheets;
 }
 
-// That of a vertex' points of R along whose sheet its faces lie. As long as it is not known whether the
-// mesh is oriented the other way, those that lie against it count nearly as much.
-inline Surface_point own_sheet(const Indexed_mesh& mesh,
-                               const std::vector<Vector_3>& points,
-                               int v,
-                               const Reference_surface& reference,
-                               const std::vector<Surface_point>& sheets,
-                               bool knows_orientation)
+// The one of these points whose sheet agrees best with the faces at the vertex. As long as the orientation
+// is unknown, the sign of the normals only breaks ties.
+inline Surface_point matching_sheet(const Indexed_mesh& mesh,
+                                    const std::vector<Vector_3>& points,
+                                    int v,
+                                    const Reference_surface& reference,
+                                    const std::vector<Surface_point>& sheets,
+                                    bool is_orientation_known)
 {
   Vector_3 normal = Vector_3::Zero();
   for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     normal += face_vector_area(mesh, points, mesh.corner_face[mesh.vertex_corners[k]]);
   const auto agreement = [&](const Surface_point& q) {
-    const double c = cosine_between(reference.normal(q), normal), little = 1e-3;
-    return knows_orientation ? c : std::abs(c) + little * c;
+    const double c = cosine_between(reference.normal(q), normal), tie_weight = 1e-3;
+    return is_orientation_known ? c : std::abs(c) + tie_weight * c;
   };
   Surface_point best = sheets.front();
   for(const Surface_point& q : sheets)
@@ -131,83 +131,83 @@ inline Surface_point own_sheet(const Indexed_mesh& mesh,
   return best;
 }
 
-// Finds every vertex' point of R, once, by the tree unless R has a vertex there, and moves free
-// vertices onto it. A reference that is oriented the other way is turned round, each component of it
-// by itself.
+// Locates every vertex on R, by the tree unless R has a vertex at the same place, and moves free vertices
+// onto R. Components of the reference that are oriented against the mesh are reversed.
 template <typename ConcurrencyTag = CGAL::Sequential_tag>
-void place_on_reference(const std::vector<Vector_3>& points,
-                        Reference_surface& reference,
-                        Optimization_state& state,
-                        Result& result,
-                        Interruption* interruption = nullptr,
-                        double distance_of_origin = 0)
+void locate_on_reference(const std::vector<Vector_3>& points,
+                         Reference_surface& reference,
+                         Optimization_state& state,
+                         Result& result,
+                         Interruption* interruption = nullptr,
+                         double distance_of_origin = 0)
 {
   const Indexed_mesh& mesh = state.mesh;
-  // a vertex this close is on R already, and keeps its bits
+  // a vertex this close is on R, and its coordinates are kept
   const double rounding = rounding_of(
     mesh, [&](int v) -> const Vector_3& { return points[v]; }, distance_of_origin);
-  const double touching = 1e-12 * reference.diagonal() + rounding;
+  const double tolerance = 1e-12 * reference.diagonal() + rounding;
 
   const Indexed_mesh& surface = reference.mesh();
   const auto is_used = [&](int v) { return !surface.is_isolated(v); };
   const Point_index index(reference.points(), is_used);
-  // of several vertices of R in one place, the one that has the same number if R is the mesh
-  const auto find_twin = [&](int v) {
-    const bool is_twin =
+  // of several coincident vertices of R, the one with the same index if R is the mesh
+  const auto find_coincident_vertex = [&](int v) {
+    const bool is_coincident =
       v < surface.number_of_vertices() && is_used(v) && reference.points()[v] == points[v];
-    return is_twin ? v : index.find(points[v]);
+    return is_coincident ? v : index.find(points[v]);
   };
   state.vertices.resize(points.size());
   std::vector<std::vector<Surface_point>> sheets(points.size());
   for_each_block<ConcurrencyTag>(mesh.number_of_vertices(), [&](int begin, int end, int) {
     for(int v = begin; v < end; ++v)
     {
-      check_now_and_then(interruption, v);
+      check_periodically(interruption, v);
       if(!mesh.is_isolated(v))
       {
-        const int twin = find_twin(v);
+        const int coincident_vertex = find_coincident_vertex(v);
         Surface_point& point = state.vertices[v].on_reference;
-        point = twin >= 0 ? reference.at_vertex(twin) : reference.closest_from_vertex(points[v], v);
-        if(twin < 0 && (point.position - points[v]).norm() <= touching)
+        point = coincident_vertex >= 0 ? reference.at_vertex(coincident_vertex)
+                                       : reference.closest_from_vertex(points[v], v);
+        if(coincident_vertex < 0 && (point.position - points[v]).norm() <= tolerance)
         {
-          sheets[v] = sheets_at(reference, points[v], point, touching);
+          sheets[v] = sheets_at(reference, points[v], point, tolerance);
           if(!sheets[v].empty())
-            point = own_sheet(mesh, points, v, reference, sheets[v], false);
+            point = matching_sheet(mesh, points, v, reference, sheets[v], false);
         }
       }
     }
   });
-  const auto place = [&](int v) {
-    Placed_vertex& placed = state.vertices[v];
+  const auto set_position = [&](int v) {
+    Located_vertex& located = state.vertices[v];
     const bool moves =
-      state.is_free[v] && (placed.on_reference.position - points[v]).norm() > rounding;
-    placed.position = moves ? placed.on_reference.position : points[v];
+      state.is_free[v] && (located.on_reference.position - points[v]).norm() > rounding;
+    located.position = moves ? located.on_reference.position : points[v];
   };
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
   {
-    place(v);
+    set_position(v);
     result.number_of_free_vertices += state.is_free[v] && !mesh.is_isolated(v);
   }
 
-  const auto orient = [&]() {
-    for(Placed_vertex& placed : state.vertices)
-      if(placed.on_reference.face >= 0)
-        placed.normal = reference.normal(placed.on_reference);
+  const auto update_normals = [&]() {
+    for(Located_vertex& located : state.vertices)
+      if(located.on_reference.face >= 0)
+        located.normal = reference.normal(located.on_reference);
   };
-  orient();
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  update_normals();
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   std::vector<double> agreement(surface.number_of_faces(), 0); // per face of R
   bool disagrees = false;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
-    if(!state.counts(f))
+    if(!state.is_optimized(f))
       continue;
     const Vector_3 n = face_normal(mesh, vertex, f);
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
     {
-      const Placed_vertex& v = vertex(mesh.corner_vertex[c]);
+      const Located_vertex& v = vertex(mesh.corner_vertex[c]);
       const double d = n.dot(v.normal);
-      // where there are several sheets that is still open
+      // undecided where there are several sheets
       if(sheets[mesh.corner_vertex[c]].empty())
         agreement[v.on_reference.face] += d;
       disagrees = disagrees || d < 0;
@@ -215,12 +215,12 @@ void place_on_reference(const std::vector<Vector_3>& points,
   }
   if(!disagrees)
     return;
-  std::vector<char> is_left(surface.number_of_faces(), 1), is_reversed(is_left.size(), 0);
+  std::vector<char> is_unvisited(surface.number_of_faces(), 1), is_reversed(is_unvisited.size(), 0);
   for(int first = 0; first < surface.number_of_faces(); ++first)
   {
-    if(!is_left[first])
+    if(!is_unvisited[first])
       continue;
-    const std::vector<int> component = take_connected_region(surface, first, is_left);
+    const std::vector<int> component = extract_connected_region(surface, first, is_unvisited);
     double sum = 0;
     for(const int f : component)
       sum += agreement[f];
@@ -229,25 +229,25 @@ void place_on_reference(const std::vector<Vector_3>& points,
         is_reversed[f] = 1;
   }
   reference.reverse(is_reversed);
-  // of two sheets that are turned against each other, the one that faces as the mesh does
+  // of two sheets of opposite orientation, the one that agrees with the mesh
   for(int v = 0; v < mesh.number_of_vertices(); ++v)
     if(!sheets[v].empty())
     {
-      state.vertices[v].on_reference = own_sheet(mesh, points, v, reference, sheets[v], true);
-      place(v);
+      state.vertices[v].on_reference = matching_sheet(mesh, points, v, reference, sheets[v], true);
+      set_position(v);
     }
-  orient();
+  update_normals();
 }
 
-// Refuses a mesh that is not close to R, but for what is not to be optimized of it. `unit` is that of
-// lengths, for the message.
+// Throws Invalid_input for a mesh that is not close to R; vertices that are not optimized are ignored.
+// `unit` is the unit of length in the message.
 inline void
 check_distances(const std::vector<Vector_3>& points, const Optimization_state& state, double unit)
 {
   const double limit = 0.1 * state.reference.diagonal();
   for(std::size_t v = 0; v < points.size(); ++v)
   {
-    if(!state.has_face_that_counts(int(v)))
+    if(!state.has_optimized_face(int(v)))
       continue;
     const double distance = (state.vertices[v].on_reference.position - points[v]).norm();
     if(!(distance <= limit))

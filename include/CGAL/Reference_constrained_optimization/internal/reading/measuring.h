@@ -20,7 +20,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What the quality measures share: reading a mesh with its named parameters, and moments.
+// Shared by the quality measures: reading a mesh with its named parameters, and moments.
 
 template <typename FaceGraph, typename NamedParameters>
 auto measured_vertex_point_map(const FaceGraph& g, const NamedParameters& np)

@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference/line_chains.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/polyline_tracing.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
 
 namespace CGAL {
@@ -18,7 +18,7 @@ namespace internal {
 struct Reference_lines
 {
   Line_edges border;
-  Line_edges features;             // what the caller says they are, or else where R is sharp
+  Line_edges features; // those that the caller names, or else the edges where R is sharp
   bool features_are_given = false; // by the caller, or detected
 
   void set_features(Line_edges edges)
@@ -28,7 +28,7 @@ struct Reference_lines
   }
 };
 
-// `mesh` is R before its quads were split
+// `mesh` is R with its quads
 template <typename ReferenceMesh, typename NamedParameters>
 Reference_lines read_reference_lines(const ReferenceMesh& graph,
                                      const NamedParameters& np,

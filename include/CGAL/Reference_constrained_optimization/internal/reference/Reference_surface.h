@@ -100,8 +100,8 @@ public:
     return (corner_point(f, 1) - corner_point(f, 0)).cross(corner_point(f, 2) - corner_point(f, 0));
   }
 
-  // whether rounding has a say in where the plane of a face is, or its square underflows
-  bool is_thin(int f) const
+  // whether rounding affects the plane of a face, or its squared area underflows
+  bool is_degenerate(int f) const
   {
     const double length = side_length(f, longest_side(f));
     const double rounding = 1e-14, smallest = 1e-150;
@@ -122,11 +122,17 @@ public:
   // one corner for each edge where R is sharp
   const std::vector<int>& creases() const { return m_creases; }
 
-  // Points of R that a mesh may not leave: first the vertices, then the middles of the creases, where
-  // a mesh with vertices on both sides is furthest away.
-  int number_of_witnesses() const { return m_mesh.number_of_vertices() + int(m_creases.size()); }
-  int crease(int witness) const { return m_creases[witness - m_mesh.number_of_vertices()]; }
-  Vector_3 witness(int i) const
+  // Samples of R whose distance to the mesh is bounded: first the vertices, then the midpoints of the
+  // creases, where a mesh with vertices on both sides is furthest away.
+  int number_of_reference_samples() const
+  {
+    return m_mesh.number_of_vertices() + int(m_creases.size());
+  }
+  int crease(int reference_sample) const
+  {
+    return m_creases[reference_sample - m_mesh.number_of_vertices()];
+  }
+  Vector_3 reference_sample(int i) const
   {
     if(i < m_mesh.number_of_vertices())
       return m_points[i];
@@ -134,13 +140,13 @@ public:
     return 0.5 * (m_points[m_mesh.source(c)] + m_points[m_mesh.target(c)]);
   }
 
-  // the same, turned round where reverse() turned the vertices' normals
+  // the same, with the orientation that reverse() gave to the vertices' normals
   Vector_3 oriented_face_normal(int f) const
   {
     return m_is_reversed.empty() || !m_is_reversed[f] ? face_normal(f) : Vector_3(-face_normal(f));
   }
 
-  // turns the normals of whole components round, given by their faces
+  // reverses the normals of whole components, given by their faces
   void reverse(const std::vector<char>& is_reversed)
   {
     m_is_reversed.resize(is_reversed.size(), 0);
@@ -168,7 +174,7 @@ public:
   Surface_point closest(const Vector_3& p) const
   {
     const Search& s = search();
-    return closest_of_hairs(
+    return closest_of_degenerate_edges(
       p, s.triangles.empty() ? Surface_point()
                              : closest_of(p, s.tree.closest_point_and_primitive(kernel_point(p))));
   }
@@ -178,22 +184,22 @@ public:
   {
     const Search& s = search();
     if(s.triangles.empty())
-      return closest_of_hairs(p, known);
+      return closest_of_degenerate_edges(p, known);
     const auto hit = s.tree.closest_point_and_primitive(
       kernel_point(p), {kernel_point(known.position), Triangle_iterator(s.triangles.end())});
-    return closest_of_hairs(
+    return closest_of_degenerate_edges(
       p, hit.second == Triangle_iterator(s.triangles.end()) ? known : closest_of(p, hit));
   }
 
-  // The same where a face is known that may be near. What a descent finds from there bounds the search;
-  // where it finds p but for rounding, there is none.
+  // The same where a face is known that may be near. The local closest point from there bounds the search,
+  // which is skipped if it is p up to rounding.
   Surface_point closest_near(const Vector_3& p, int face, double rounding) const
   {
-    const Foot foot = descend_to(
+    const Projection projection = local_closest_point(
       m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face,
       largest_small_valence);
-    const double distance = std::sqrt(foot.squared_distance);
-    const Surface_point known = {foot.position, foot.face, foot.barycentric};
+    const double distance = std::sqrt(projection.squared_distance);
+    const Surface_point known = {projection.position, projection.face, projection.barycentric};
     if(distance <= rounding)
       return known;
     return distance < m_mean_edge_length ? closest(p, known) : closest(p);
@@ -207,18 +213,19 @@ public:
              : closest(p);
   }
 
-  // How far it is from the middle of a face to what is opposite, through the material or across a gap, if
-  // that is less than `reach`. Faces that share a vertex with it are not opposite.
-  double clearance(int f, double reach) const
+  // The distance from the centroid of a face to the surface opposite to it, through the material or across
+  // a gap, at most `largest_distance`. Faces that share a vertex with it are not opposite.
+  double clearance(int f, double largest_distance) const
   {
     const Search& s = search();
     const Vector_3 middle = (corner_point(f, 0) + corner_point(f, 1) + corner_point(f, 2)) / 3;
     const Vector_3 direction = face_normal(f).normalized();
     std::vector<Triangle_iterator> hits;
-    s.tree.all_intersected_primitives(Kernel::Segment_3(kernel_point(middle - reach * direction),
-                                                        kernel_point(middle + reach * direction)),
-                                      std::back_inserter(hits));
-    double least = reach;
+    s.tree.all_intersected_primitives(
+      Kernel::Segment_3(kernel_point(middle - largest_distance * direction),
+                        kernel_point(middle + largest_distance * direction)),
+      std::back_inserter(hits));
+    double least = largest_distance;
     for(const Triangle_iterator& hit : hits)
     {
       const int g = s.face[hit - Triangle_iterator(s.triangles.begin())];
@@ -239,7 +246,7 @@ public:
     return false;
   }
 
-  // what is within a distance of p, by the tree: the closest point of every face there
+  // the closest point of every face within a distance of p, by the tree
   std::vector<Surface_point> all_within(const Vector_3& p, double distance) const
   {
     const Search& s = search();
@@ -267,11 +274,11 @@ public:
   }
 
   // local closest point, from `face` on
-  Surface_point descend(const Vector_3& p, int face) const
+  Surface_point local_closest(const Vector_3& p, int face) const
   {
-    const Foot foot = descend_to(
+    const Projection projection = local_closest_point(
       m_mesh, [&](int v) -> const Vector_3& { return m_points[v]; }, p, face);
-    return {foot.position, foot.face, foot.barycentric};
+    return {projection.position, projection.face, projection.barycentric};
   }
 
   // whether `to` can be reached from `from` over vertices of R within the given length of path
@@ -287,8 +294,8 @@ public:
     };
     for(int i = 0; i < 3; ++i)
       queue.push(Entry((corner_point(from.face, i) - from.position).norm(), corner(from.face, i)));
-    const std::size_t enough = 2000;
-    while(!queue.empty() && reached.size() < enough)
+    const std::size_t limit = 2000;
+    while(!queue.empty() && reached.size() < limit)
     {
       const Entry e = queue.top();
       queue.pop();
@@ -311,20 +318,20 @@ public:
   }
 
 private:
-  // built when it is first asked, which may be never
+  // built on first use
   struct Search
   {
     std::once_flag is_built;
     std::vector<Kernel::Triangle_3> triangles;
     std::vector<int> face;   // per triangle
-    bool has_pieces = false; // whether some face is there in several triangles
+    bool has_pieces = false; // whether some face was subdivided into several triangles
     Triangle_tree<Kernel, Triangle_iterator> tree;
-    // Faces with next to no area confuse such a tree. What they hold that no other face does, up to
-    // rounding: their longest sides, where the face behind is like that, too, and components that are
-    // a point.
-    std::vector<Kernel::Segment_3> hairs;
-    std::vector<int> hair_face;
-    Segment_tree<Kernel, Segment_iterator> hair_tree;
+    // Faces of nearly zero area make queries of such a tree inaccurate. They are replaced by their longest
+    // edges, unless the face on the other side is not degenerate; components that are a point are such an
+    // edge, too.
+    std::vector<Kernel::Segment_3> degenerate_edges;
+    std::vector<int> degenerate_edge_face;
+    Segment_tree<Kernel, Segment_iterator> degenerate_edge_tree;
   };
 
   static Kernel::Point_3 kernel_point(const Vector_3& p)
@@ -345,75 +352,79 @@ private:
     return closest_in_face(p, s.face[hit.second - Triangle_iterator(s.triangles.begin())]);
   }
 
-  // the closest point of a hair if that is closer by more than rounding, or there is none known
-  Surface_point closest_of_hairs(const Vector_3& p, const Surface_point& known) const
+  // the closest point of a degenerate edge if it is closer by more than rounding, or if no other point is
+  // known
+  Surface_point closest_of_degenerate_edges(const Vector_3& p, const Surface_point& known) const
   {
     const Search& s = *m_search;
-    if(s.hairs.empty())
+    if(s.degenerate_edges.empty())
       return known;
-    const auto hit = s.hair_tree.closest_point_and_primitive(kernel_point(p));
-    const int face = s.hair_face[hit.second - Segment_iterator(s.hairs.begin())];
-    const Surface_point on_hair = closest_in_face(p, face);
+    const auto hit = s.degenerate_edge_tree.closest_point_and_primitive(kernel_point(p));
+    const int face =
+      s.degenerate_edge_face[hit.second - Segment_iterator(s.degenerate_edges.begin())];
+    const Surface_point on_degenerate_edge = closest_in_face(p, face);
     const double rounding = 1e-14 * m_diagonal;
-    return known.face < 0 || (on_hair.position - p).norm() + rounding < (known.position - p).norm()
-             ? on_hair
+    return known.face < 0 ||
+               (on_degenerate_edge.position - p).norm() + rounding < (known.position - p).norm()
+             ? on_degenerate_edge
              : known;
   }
 
   void build_tree() const
   {
     Search& s = *m_search;
-    const double fill = box_over_face_limit();
+    const double fill = box_to_face_ratio_limit();
     bool has_point = false;
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
     {
       const Vector_3 p[3] = {corner_point(f, 0), corner_point(f, 1), corner_point(f, 2)};
-      if(!is_thin(f))
+      if(!is_degenerate(f))
       {
-        add_pieces(p, f, box_over_face(f) / fill);
+        add_pieces(p, f, box_to_face_ratio(f) / fill);
         continue;
       }
       const int i = longest_side(f), behind = m_mesh.opposite[m_mesh.face_begin[f] + i];
       const double length = side_length(f, i);
       has_point = has_point || !(length > 0);
-      if(length > 0 && (behind < 0 || is_thin(m_mesh.corner_face[behind])))
-        add_hair(p[i], p[(i + 1) % 3], f);
+      if(length > 0 && (behind < 0 || is_degenerate(m_mesh.corner_face[behind])))
+        add_degenerate_edge(p[i], p[(i + 1) % 3], f);
     }
     if(has_point)
       add_points();
     s.tree.insert(s.triangles.begin(), s.triangles.end());
     s.tree.build();
     s.tree.accelerate_distance_queries();
-    s.hair_tree.insert(s.hairs.begin(), s.hairs.end());
-    s.hair_tree.build();
-    s.hair_tree.accelerate_distance_queries();
+    s.degenerate_edge_tree.insert(s.degenerate_edges.begin(), s.degenerate_edges.end());
+    s.degenerate_edge_tree.build();
+    s.degenerate_edge_tree.accelerate_distance_queries();
   }
 
-  void add_hair(const Vector_3& from, const Vector_3& to, int f) const
+  void add_degenerate_edge(const Vector_3& from, const Vector_3& to, int f) const
   {
-    m_search->hairs.emplace_back(kernel_point(from), kernel_point(to));
-    m_search->hair_face.push_back(f);
+    m_search->degenerate_edges.emplace_back(kernel_point(from), kernel_point(to));
+    m_search->degenerate_edge_face.push_back(f);
   }
 
-  // Components that are a point each; the tree wants segments that have a length.
+  // Components that are a single point; the tree requires segments of positive length.
   void add_points() const
   {
-    std::vector<char> is_left(m_mesh.number_of_faces(), 1);
+    std::vector<char> is_unvisited(m_mesh.number_of_faces(), 1);
     for(int first = 0; first < m_mesh.number_of_faces(); ++first)
-      if(is_left[first] && !(side_length(first, longest_side(first)) > 0))
+      if(is_unvisited[first] && !(side_length(first, longest_side(first)) > 0))
       {
-        const std::vector<int> component = take_connected_region(m_mesh, first, is_left);
+        const std::vector<int> component = extract_connected_region(m_mesh, first, is_unvisited);
         const bool is_point = std::none_of(component.begin(), component.end(), [&](int f) {
           return side_length(f, longest_side(f)) > 0;
         });
-        const double little = 1e-14 * m_diagonal;
+        const double tiny_length = 1e-14 * m_diagonal;
         if(is_point)
-          add_hair(corner_point(first, 0), corner_point(first, 0) + Vector_3(little, 0, 0), first);
+          add_degenerate_edge(corner_point(first, 0),
+                              corner_point(first, 0) + Vector_3(tiny_length, 0, 0), first);
       }
   }
 
-  // Boxes of the faces of a large fan hold one another, so that a tree of them would look at all of
-  // them for every point. Faces that fill little of their boxes go into the tree in pieces.
+  // Bounding boxes of the faces of a large fan overlap, so that a query would visit all of them. Faces that
+  // are small compared with their boxes are subdivided in the tree.
   void add_pieces(const Vector_3* p, int f, double number) const
   {
     Search& s = *m_search;
@@ -434,23 +445,23 @@ private:
     add_pieces(second, f, number / 2);
   }
 
-  // the largest side of a face's box over twice the area of the face, but no more than there is use for
-  double box_over_face(int f) const
+  // the area of the largest side of a face's bounding box over twice the area of the face, up to a limit
+  double box_to_face_ratio(int f) const
   {
     const Vector_3 &a = corner_point(f, 0), &b = corner_point(f, 1), &c = corner_point(f, 2);
     const Vector_3 box = a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c);
     const double side = (std::max)({box.x() * box.y(), box.y() * box.z(), box.z() * box.x()});
-    const double enough = 1024;
-    return (std::min)(side / face_normal(f).norm(), enough);
+    const double limit = 1024;
+    return (std::min)(side / face_normal(f).norm(), limit);
   }
 
-  // what that may be before a face is divided, such that there are few pieces for each face in the mean
-  double box_over_face_limit() const
+  // the ratio above which a face is subdivided, such that the mean number of pieces per face is bounded
+  double box_to_face_ratio_limit() const
   {
     double sum = 0;
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
-      if(!is_thin(f))
-        sum += box_over_face(f);
+      if(!is_degenerate(f))
+        sum += box_to_face_ratio(f);
     const double at_least = 16, pieces = 8;
     return (std::max)(at_least, sum / (pieces * m_mesh.number_of_faces()));
   }
@@ -501,7 +512,7 @@ private:
     }
     for(std::size_t v = 0; v < m_normals.size(); ++v)
     {
-      // where faces cancel out, as on a rim folded flat, rounding has no say in where outside is
+      // where normals cancel out, as on a rim folded flat, rounding must not decide on the orientation
       const double length = m_normals[v].norm(), rounding = 1e-14 * areas[v];
       if(length > rounding)
         m_normals[v] /= length;

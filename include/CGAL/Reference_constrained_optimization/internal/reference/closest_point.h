@@ -52,8 +52,8 @@ closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, con
   const double det = n.squaredNorm(), uu = u.squaredNorm(), vv = v.squaredNorm();
   if(!(det > 1e-8 * uu * vv))
   {
-    // seen from the tip of a needle digits are lost, too: from the vertex that is opposite to the
-    // longest side they are not
+    // at the tip of a needle the result is inaccurate, too; at the vertex opposite to the longest side it
+    // is not
     const double opposite = (c - b).squaredNorm();
     if(uu > opposite && uu >= vv)
     {
@@ -75,7 +75,7 @@ closest_barycentric(const Vector_3& p, const Vector_3& a, const Vector_3& b, con
 }
 
 // a point of a triangle mesh that is a local minimum of the distance to another one
-struct Foot
+struct Projection
 {
   int face = -1;
   Vector_3 barycentric = Vector_3::Zero();
@@ -83,27 +83,29 @@ struct Foot
   double squared_distance = 0;
 };
 
-// Local closest point: from `face` to ever closer neighbours. Never leaves the sheet it starts on.
-// `point(v)` is the position of a vertex. At a vertex of more faces than `largest_valence` it ends.
+// Local closest point: starts at `face` and moves to ever closer neighbouring faces. Never leaves the sheet
+// it starts on. `point(v)` is the position of a vertex. At a vertex of more faces than `largest_valence` it
+// ends.
 template <typename PointAccess>
-Foot descend_to(const Indexed_mesh& mesh,
-                const PointAccess& point,
-                const Vector_3& p,
-                int face,
-                int largest_valence = (std::numeric_limits<int>::max)())
+Projection local_closest_point(const Indexed_mesh& mesh,
+                               const PointAccess& point,
+                               const Vector_3& p,
+                               int face,
+                               int largest_valence = (std::numeric_limits<int>::max)())
 {
   const auto closest_in_face = [&](int f) {
     const int* v = &mesh.corner_vertex[mesh.face_begin[f]];
     const Vector_3 &a = point(v[0]), &b = point(v[1]), &c = point(v[2]);
-    Foot foot;
-    foot.face = f;
-    foot.barycentric = closest_barycentric(p, a, b, c);
-    foot.position = foot.barycentric(0) * a + foot.barycentric(1) * b + foot.barycentric(2) * c;
-    foot.squared_distance = (foot.position - p).squaredNorm();
-    return foot;
+    Projection projection;
+    projection.face = f;
+    projection.barycentric = closest_barycentric(p, a, b, c);
+    projection.position =
+      projection.barycentric(0) * a + projection.barycentric(1) * b + projection.barycentric(2) * c;
+    projection.squared_distance = (projection.position - p).squaredNorm();
+    return projection;
   };
 
-  Foot best = closest_in_face(face);
+  Projection best = closest_in_face(face);
   while(true)
   {
     const int begin = mesh.face_begin[best.face];
@@ -113,13 +115,13 @@ Foot descend_to(const Indexed_mesh& mesh,
     if(best.barycentric(zero) > 0)
       return best;
 
-    Foot candidate = best;
+    Projection candidate = best;
     const auto consider = [&](int f) {
-      const Foot foot = closest_in_face(f);
-      if(foot.squared_distance < candidate.squared_distance)
-        candidate = foot;
+      const Projection projection = closest_in_face(f);
+      if(projection.squared_distance < candidate.squared_distance)
+        candidate = projection;
     };
-    // next to a vertex the way on may lead through any face at it
+    // close to a vertex any face at it may be closer
     const double at_vertex = 1 - 1e-9;
     if(best.barycentric(one) < at_vertex)
     {

@@ -11,11 +11,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The unit direction in which a point of a crease of R may go and stay on it: of the two at a vertex,
-// the one that agrees better with `wanted`. Zero if the point is not on a crease, or where creases
-// end or meet.
-inline Vector_3
-crease_direction(const Reference_surface& reference, const Surface_point& p, const Vector_3& wanted)
+// The unit direction of the crease of R at a point: of the two at a vertex, the one that agrees better with
+// `preferred`. Zero if the point is not on a crease, or where creases end or meet.
+inline Vector_3 crease_direction(const Reference_surface& reference,
+                                 const Surface_point& p,
+                                 const Vector_3& preferred)
 {
   const Indexed_mesh& mesh = reference.mesh();
   const double on = 1e-6; // of a height
@@ -43,7 +43,7 @@ crease_direction(const Reference_surface& reference, const Surface_point& p, con
       continue;
     ++count;
     const Vector_3 d = along(c);
-    if(count == 1 || d.dot(wanted) > best.dot(wanted))
+    if(count == 1 || d.dot(preferred) > best.dot(preferred))
       best = d;
   }
   return count == 2 ? best : Vector_3(Vector_3::Zero());

@@ -11,8 +11,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// By how many places the cyclic list of vertices of face f has to be turned to find that of
-// another mesh's face of `degree` vertices `other(i)`; -1 if the lists differ.
+// The shift that maps the cyclic list of vertices of face f to that of another mesh's face of `degree`
+// vertices `other(i)`; -1 if the lists differ.
 template <typename VertexAccess>
 int face_rotation(const Indexed_mesh& mesh, int f, int degree, const VertexAccess& other)
 {

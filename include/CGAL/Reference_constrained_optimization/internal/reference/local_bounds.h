@@ -19,19 +19,20 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// How far a mesh may be from R at each vertex of R: the default bound, but no more than a part of the size
-// of what is there. On mechanical parts, where small holes lie among large faces, sheets are thin and fits are
-// close, that is the shortest edge and the way to what is opposite, and the default is a fifth of that for
-// scans; on scans, where single short edges mean nothing, the longest edge within two rings. Between
-// vertices bounds grow no faster than a part of the distance.
-// Lengths are meant for a default bound of a quarter of the mean edge.
+// The largest distance of a mesh from R at each vertex of R: the default bound, but no more than a fraction
+// of the local feature size. On mechanical parts, which have small holes among large faces, thin walls and
+// narrow gaps, that is the shortest edge and the distance to the opposite surface, and the default bound is
+// a fifth of that for scans; on scans, where single short edges are not significant, it is the longest edge
+// within two rings. Between vertices bounds grow no faster than a fraction of the distance. The constants
+// hold for a default bound of a quarter of the mean edge.
 inline std::vector<double> local_bounds(const Reference_surface& reference,
                                         const std::vector<char>& is_mechanical,
                                         double default_bound)
 {
   const double scale = default_bound / (0.25 * reference.mean_edge_length());
-  const double shortest_part = 0.5 * scale, longest_part = 0.35 * scale, grading = 0.5 * scale;
-  const double thin_part = 0.25 * scale;
+  const double shortest_fraction = 0.5 * scale, longest_fraction = 0.35 * scale,
+               grading = 0.5 * scale;
+  const double thickness_fraction = 0.25 * scale;
   const double mechanical_bound = 0.2 * default_bound;
   const double least = (is_mechanical.empty() ? 0.02 : 0.002) * default_bound;
   const Indexed_mesh& mesh = reference.mesh();
@@ -52,16 +53,16 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
   std::vector<double> clearance(is_mechanical.empty() ? 0 : n,
                                 std::numeric_limits<double>::infinity());
   for(int f = 0; f < int(is_mechanical.size()); ++f)
-    if(is_mechanical[f] && !reference.is_thin(f))
+    if(is_mechanical[f] && !reference.is_degenerate(f))
     {
-      const double distance = reference.clearance(f, mechanical_bound / thin_part);
+      const double distance = reference.clearance(f, mechanical_bound / thickness_fraction);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         clearance[mesh.corner_vertex[c]] = (std::min)(clearance[mesh.corner_vertex[c]], distance);
     }
   std::vector<double> longest(n, 0);
   for(int v = 0; v < n; ++v)
     for_each_neighbour(v, [&](int, double length) { longest[v] = (std::max)(longest[v], length); });
-  // vertices that all but coincide are no detail
+  // vertices that nearly coincide are no detail
   for(int ring = 0; ring < 2; ++ring)
   {
     const std::vector<double> before = longest;
@@ -72,14 +73,15 @@ inline std::vector<double> local_bounds(const Reference_surface& reference,
   {
     if(mesh.is_isolated(v))
       continue;
-    double bound = (std::min)(default_bound, longest_part * longest[v]);
+    double bound = (std::min)(default_bound, longest_fraction * longest[v]);
     if(!is_mechanical.empty() && is_mechanical[mesh.face_at(v)])
     {
       double shortest = longest[v];
       for_each_neighbour(v, [&](int, double length) {
         shortest = length > 0 ? (std::min)(shortest, length) : shortest;
       });
-      bound = (std::min)({mechanical_bound, shortest_part * shortest, thin_part * clearance[v]});
+      bound = (std::min)(
+        {mechanical_bound, shortest_fraction * shortest, thickness_fraction * clearance[v]});
     }
     bounds[v] = (std::max)(least, bound);
     if(bounds[v] < default_bound)

@@ -20,22 +20,22 @@ namespace internal {
 struct Loop_parameters
 {
   std::size_t number_of_iterations = 100;
-  double drift_bound = -1; // a length; negative: see Patch_visits::make_drift_guard
-  // decrease per iteration, relative to what the energy has above that of elements at rest
+  double drift_bound = -1; // a length; negative: see Patch_visits::make_shape_bound
+  // decrease per iteration, relative to the excess of the energy over that of elements at rest
   double energy_tolerance = 4e-3;
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
-  int proposals_per_patch = 2; // that is flattened; each after the first needs a gain by the last
+  int proposals_per_patch = 2; // if flattened; each after the first requires a decrease by the last
   int on_surface_proposals = 3;
   bool use_finishing_stage = true;
-  int halo = 4; // rings around the patches of a round in which no other patch of it starts
+  int halo = 4; // rings around a patch of a round in which no other one starts
   Selection_parameters selection;
   Flattened_mover::Parameters mover;
   bool relax_constraints = false;
   bool detect_features = true; // where the caller constrains no edges
   bool use_on_surface_steps = true;
   bool use_active_set = true; // else every iteration visits the whole mesh
-  bool accepts_all = false;   // whatever was mapped back is kept, better or not
+  bool accepts_all = false;   // every proposal is accepted
 };
 
 // Sizes are counted in triangles: a quad is two.
@@ -46,8 +46,8 @@ inline int triangles_to_faces(const Indexed_mesh& mesh, double triangles)
   return int(triangles / triangles_per_face);
 }
 
-// Larger patches take fewer iterations, each more costly by face: their size grows with the mesh,
-// as fast as their number.
+// Larger patches need fewer iterations, each more expensive per face: their size grows with the mesh, as
+// fast as their number.
 inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
 {
   const double triangles = double(mesh.number_of_corners() - 2 * mesh.number_of_faces());
@@ -56,23 +56,25 @@ inline int patch_size(const Indexed_mesh& mesh, double factor, double smallest)
     mesh, (std::min)(largest, (std::max)(smallest, factor * std::sqrt(triangles))));
 }
 
-// Where steps on the surface follow, what is laid flat for the sake of sharp triangles is no larger than
-// it takes to mend them; stretched elements are a matter of what is around them.
-inline Selection_parameters
-sized(const Loop_parameters& parameters, const Indexed_mesh& mesh, bool judges_angles)
+// Where steps on the surface follow, patches that are flattened because of sharp triangles are small;
+// stretched elements depend on larger surroundings.
+inline Selection_parameters with_patch_size(const Loop_parameters& parameters,
+                                            const Indexed_mesh& mesh,
+                                            bool has_angle_criterion)
 {
   Selection_parameters selection = parameters.selection;
-  // steps on the surface come by everywhere afterwards
-  selection.visits_all_well = !parameters.use_on_surface_steps;
+  // steps on the surface visit all faces afterwards
+  selection.requires_interior = !parameters.use_on_surface_steps;
   if(selection.maximum_patch_size == 0)
-    selection.maximum_patch_size = parameters.use_on_surface_steps && judges_angles
+    selection.maximum_patch_size = parameters.use_on_surface_steps && has_angle_criterion
                                      ? patch_size(mesh, 1.2, 150)
                                      : patch_size(mesh, 4.5, 400);
   return selection;
 }
 
-// of patches around bad elements that are flattened
-inline Selection_parameters small(Selection_parameters selection, const Indexed_mesh& mesh)
+// for flattened patches around bad elements
+inline Selection_parameters with_small_patch_size(Selection_parameters selection,
+                                                  const Indexed_mesh& mesh)
 {
   const int size = triangles_to_faces(mesh, 200);
   if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
@@ -80,15 +82,15 @@ inline Selection_parameters small(Selection_parameters selection, const Indexed_
   return selection;
 }
 
-// what the user wants no patch to exceed
+// the bound that the user gave
 inline int largest_patch_size(const Selection_parameters& selection)
 {
   return selection.maximum_patch_size > 0 ? selection.maximum_patch_size
                                           : (std::numeric_limits<int>::max)();
 }
 
-// Of the patches that are optimized on the surface. In a large patch a vertex can go a long way at
-// once; a large mesh is divided nevertheless, so that there is work for several threads.
+// Of the patches that are optimized on the surface. Large patches allow large displacements; a large mesh
+// is divided nevertheless, so that several threads can be used.
 inline int on_surface_patch_size(const Selection_parameters& selection, const Indexed_mesh& mesh)
 {
   if(selection.maximum_patch_size > 0)

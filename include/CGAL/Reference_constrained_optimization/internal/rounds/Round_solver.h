@@ -21,21 +21,22 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Solves the patches of a round, each from the state before the round, commits what is accepted, and
-// keeps what is known of the state up to date: geometry of faces and samples of drift.
+// Solves the patches of a round, each from the state before the round, commits those that are accepted, and
+// updates what depends on the state: geometry of faces and samples of drift.
 template <typename ConcurrencyTag, typename Visitor>
 class Round_solver
 {
 public:
-  // what rounds have come to since the last call to `begin_iteration()`
+  // sums over the rounds since the last call to `begin_iteration()`
   struct Progress
   {
-    std::vector<char> moved;  // per vertex: by more than the tolerance
-    bool has_refused = false; // a patch on the surface
-    // on the surface, summed over the vertices: the parts of their steps that they took, and how many
-    // could move
-    double taken = 0, could_move = 0;
-    double missed = 0; // on the surface: the gain that whole steps had promised
+    std::vector<char> moved;   // per vertex: by more than the tolerance
+    bool has_rejected = false; // a patch on the surface
+    // on the surface, summed over the vertices: the accepted fractions of their steps, and the number of
+    // vertices
+    double sum_of_fractions = 0, number_of_movable_vertices = 0;
+    // on the surface: the predicted decrease that was not achieved since steps were cut
+    double unrealized_decrease = 0;
   };
 
   Round_solver(Optimization_state& state,
@@ -53,13 +54,13 @@ public:
   {}
 
   // from the state as it is, before the first round
-  void initialize(Drift_guard guard)
+  void initialize(Shape_bound shape_bound)
   {
     const Indexed_mesh& mesh = m_state.mesh;
     std::vector<Vector_3> points(mesh.number_of_vertices());
     for(int v = 0; v < mesh.number_of_vertices(); ++v)
       points[v] = m_state.vertices[v].position;
-    m_drift_guard = std::move(guard);
+    m_shape_bound = std::move(shape_bound);
     m_interruption.check();
     m_geometry.update(mesh, points);
     m_interruption.check();
@@ -75,10 +76,10 @@ public:
 
   const Progress& progress() const { return m_progress; }
   const Face_geometry& geometry() const { return m_geometry; }
-  Drift_guard& drift_guard() { return m_drift_guard; }
+  Shape_bound& shape_bound() { return m_shape_bound; }
   void set_finishing(bool is_finishing) { m_is_finishing = is_finishing; } // for reports
 
-  // false if it was cut short; what was solved by then is committed
+  // false if it was interrupted; patches that were solved by then are committed
   template <typename Density>
   bool solve(const std::vector<std::vector<int>>& patches,
              Moves moves,
@@ -91,18 +92,18 @@ public:
     m_for_each(
       patches.size(),
       [&](Patch_solver& solver, std::size_t i) {
-        if(m_interruption.stops())
+        if(m_interruption.should_stop())
           return;
         try
         {
-          solver.solve(patches[i], m_state, density, settings, m_drift_guard, moves, solved[i]);
+          solver.solve(patches[i], m_state, density, settings, m_shape_bound, moves, solved[i]);
         }
         catch(const Interrupted&)
         {
-          solved[i] = Solved_patch(); // as if it had not been begun
+          solved[i] = Solved_patch(); // as if it had not been started
         }
       },
-      [&]() { m_interruption.stops(); });
+      [&]() { m_interruption.should_stop(); });
     commit_round(
       m_state, solved, m_for_each, [&](const Solved_patch& s) { report(s); },
       [&](const Solved_patch& s) { update(s); });
@@ -111,11 +112,11 @@ public:
   }
 
 private:
-  // Part of the mean edge length at a vertex: where all around move less it is at rest. Small ways of many
-  // together may lead far, which is why two rings are looked at.
+  // Fraction of the mean edge length at a vertex: vertices that move less do not keep their surroundings
+  // active. Small displacements of many vertices together may add up, which is why two rings are active.
   static constexpr double movement_tolerance = 0.02;
 
-  // what follows from a patch that stays, for its own vertices and faces; `s.placed` holds the old
+  // updates the data of the vertices and faces of a patch that was committed; `s.located` holds the old
   // vertices
   void update(const Solved_patch& s)
   {
@@ -124,14 +125,14 @@ private:
       for(const int i : *vertices)
       {
         const int v = patch.vertices[i];
-        const double moved = (m_state.vertices[v].position - s.placed[i].position).norm();
+        const double moved = (m_state.vertices[v].position - s.located[i].position).norm();
         if(moved > movement_tolerance * m_edge_length[v])
           m_progress.moved[v] = 1;
       }
     for(const int f : patch.faces)
       m_geometry.set(m_state.mesh, f,
                      [&](int v) -> const Vector_3& { return m_state.vertices[v].position; });
-    m_drift_guard.take_back(patch.faces, s.guests, s.samples);
+    m_shape_bound.store(patch.faces, s.projected_samples, s.samples);
   }
 
   void report(const Solved_patch& s)
@@ -150,18 +151,18 @@ private:
       m_result.sum_of_flattening_distortion += s.distortion;
     }
     if(s.decision.accepted)
-      m_state.angle_surplus += s.decision.after.angles - s.decision.before.angles;
+      m_state.angle_gain += s.decision.after.angles - s.decision.before.angles;
     m_state.volume_change += s.decision.after.volume - s.decision.before.volume;
     m_result.number_of_accepted_patches += s.decision.accepted;
     m_result.number_of_flattened_patches += s.decision.accepted && s.is_flattened;
     if(s.was_tried && !s.is_flattened)
     {
-      m_progress.taken += s.taken * s.number_of_free_vertices;
-      m_progress.could_move += s.number_of_free_vertices;
-      m_progress.missed += s.missed;
+      m_progress.sum_of_fractions += s.accepted_fraction * s.number_of_free_vertices;
+      m_progress.number_of_movable_vertices += s.number_of_free_vertices;
+      m_progress.unrealized_decrease += s.unrealized_decrease;
     }
-    m_progress.has_refused =
-      m_progress.has_refused || (s.was_tried && !s.decision.accepted && !s.is_flattened);
+    m_progress.has_rejected =
+      m_progress.has_rejected || (s.was_tried && !s.decision.accepted && !s.is_flattened);
 
     Patch_report report;
     report.number_of_faces = s.number_of_faces;
@@ -181,7 +182,7 @@ private:
   For_each_patch<ConcurrencyTag, Patch_solver> m_for_each;
   Face_geometry m_geometry;
   std::vector<double> m_edge_length; // per vertex, of the input
-  Drift_guard m_drift_guard;
+  Shape_bound m_shape_bound;
   Progress m_progress;
   bool m_is_finishing = false;
 };

@@ -9,13 +9,13 @@
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Edge_folds.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Energy_decrease.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Face_orientation.h>
-#include <CGAL/Reference_constrained_optimization/internal/invariants/Face_turns.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Largest_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Mean_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Normal_deviation_bound.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Smallest_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Smooth_edges.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Volume.h>
-#include <CGAL/Reference_constrained_optimization/internal/rounds/step_field.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/Vertex_step_sizes.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
 
 #include <algorithm>
@@ -27,21 +27,20 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What no step may do: rules for single faces, edges, elements and samples, and rules for sums over a patch,
-// which are asked for in this order once the others hold.
+// The invariants of a step: those of single faces, edges, elements and samples, and those of sums over a
+// patch, which are tested in this order once the others hold.
 typedef std::tuple<Face_orientation,
                    Edge_folds,
                    Largest_density,
                    Smallest_angle,
                    Smooth_edges,
-                   Face_turns,
+                   Normal_deviation_bound,
                    Distance_bound>
   Local_invariants;
 typedef std::tuple<Volume, Mean_angle, Energy_decrease> Sum_invariants;
 
-// Decides on what a mover proposes: first defects, then energy, all measured on R. Where an invariant does
-// not hold the step is cut back, first at the vertices that are to blame, then everywhere; only what a cut
-// changes is measured again.
+// Backtracking on a mover's proposal, measured on R. If an invariant does not hold the step is reduced,
+// first at the violating vertices, then everywhere; only faces that change are measured again.
 template <typename Local, typename Sums>
 class Backtracking_with
 {
@@ -51,7 +50,7 @@ public:
   struct Decision
   {
     bool accepted = false;
-    bool is_final = false; // accepted without a test, and not to be tested later
+    bool is_final = false; // accepted without a test, also at the commit
     Patch_measure before, after;
   };
 
@@ -70,7 +69,7 @@ public:
     const Trial trial{patch,   state,      m_candidate,       samples,   m_before,
                       m_after, m_accepted, m_outside_normals, m_changed, m_is_changed};
     for_each_invariant([&](auto& invariant) { invariant.set(limits); });
-    m_candidate = patch.placed;
+    m_candidate = patch.located;
     if(is_first)
     {
       start(trial);
@@ -80,14 +79,14 @@ public:
     decision.before = m_accepted;
     m_before = m_after;
     for_each_invariant([](auto& invariant) { invariant.accept(); });
-    m_steps.start(patch);
-    m_violations.assign(patch.vertices.size(), 0);
+    m_step_sizes.start(patch);
+    m_number_of_violations.assign(patch.vertices.size(), 0);
 
     const int maximum_attempts = 20, local_attempts = 16;
     for(int attempt = 0; attempt < maximum_attempts; ++attempt)
     {
       check(m_interruption);
-      place(patch, mover);
+      displace_vertices(patch, mover);
       measure(trial, density);
       decision.after = sum_up(trial);
       violating.clear();
@@ -99,19 +98,19 @@ public:
         return decision;
       }
       if(!violating.list().empty() && attempt < local_attempts)
-        cut(patch, violating);
+        reduce_steps(patch, violating);
       else
-        m_steps.cut_all(patch, 0.5);
-      if(m_steps.has_stopped(patch))
+        m_step_sizes.reduce_all(patch, 0.5);
+      if(m_step_sizes.is_zero(patch))
         break;
     }
     decision.after = decision.before;
     return decision;
   }
 
-  // what was accepted, to be taken, and the part of its way that each vertex went
-  std::vector<Placed_vertex>& candidate() { return m_candidate; }
-  const std::vector<double>& steps() const { return m_steps.parts(); }
+  // the accepted vertices, to be moved from, and the fraction of its displacement for each
+  std::vector<Located_vertex>& candidate() { return m_candidate; }
+  const std::vector<double>& steps() const { return m_step_sizes.fractions(); }
   const Patch_samples& samples() const { return std::get<Distance_bound>(m_local).now(); }
 
 private:
@@ -126,7 +125,7 @@ private:
   void start(const Trial& trial)
   {
     const Patch& patch = trial.patch;
-    const auto vertex = [&](int v) -> const Placed_vertex& { return trial.state.vertices[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return trial.state.vertices[v]; };
     m_outside_normals.resize(patch.outside_face.size());
     for(std::size_t c = 0; c < patch.outside_face.size(); ++c)
       if(patch.outside_face[c] >= 0)
@@ -148,7 +147,7 @@ private:
     });
   }
 
-  // in a fixed order, whatever was measured when
+  // in a fixed order, whichever faces were measured
   Patch_measure sum_up(const Trial& trial)
   {
     Patch_measure m;
@@ -163,10 +162,11 @@ private:
     return m;
   }
 
-  // whether all invariants do
+  // whether all invariants hold
   bool hold(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
-    bool hold_locally = true; // each is asked: all that is wrong is cut back at once
+    // all are tested, to reduce the steps of all violating vertices at once
+    bool hold_locally = true;
     std::apply(
       [&](const auto&... invariants) {
         ((hold_locally = invariants.holds(trial, violating) && hold_locally), ...);
@@ -180,15 +180,15 @@ private:
              m_sums);
   }
 
-  // takes the vertices whose steps are new to where they lead, and notes the faces that change
+  // moves the vertices whose steps have changed, and marks the faces that change
   template <typename Mover>
-  void place(const Patch& patch, Mover& mover)
+  void displace_vertices(const Patch& patch, Mover& mover)
   {
     const Indexed_mesh& mesh = patch.polygons;
     for(const int f : m_changed)
       m_is_changed[f] = 0;
     m_changed.clear();
-    m_steps.settle(patch, mover, [&](int v, double step) {
+    m_step_sizes.apply(patch, mover, [&](int v, double step) {
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
       {
         const int f = mesh.corner_face[mesh.vertex_corners[k]];
@@ -198,28 +198,28 @@ private:
           m_changed.push_back(f);
         }
       }
-      m_candidate[v] = patch.placed[v];
-      if(step == 0 || mover.place(patch, v, step, m_candidate[v]))
+      m_candidate[v] = patch.located[v];
+      if(step == 0 || mover.displaced_vertex(patch, v, step, m_candidate[v]))
         return true;
-      m_candidate[v] = patch.placed[v];
+      m_candidate[v] = patch.located[v];
       return false;
     });
   }
 
-  // the violating vertices go back, and after a while their neighbours, too
-  void cut(const Patch& patch, Violating_vertices& violating)
+  // reduces the steps of the violating vertices, and after repeated violations those of their neighbours
+  void reduce_steps(const Patch& patch, Violating_vertices& violating)
   {
     const Indexed_mesh& mesh = patch.polygons;
     m_rings.assign(patch.vertices.size(), 0);
     for(const int v : violating.list())
     {
-      ++m_violations[v];
-      m_rings[v] = m_violations[v] / 2;
+      ++m_number_of_violations[v];
+      m_rings[v] = m_number_of_violations[v] / 2;
     }
     for(std::size_t i = 0; i < violating.list().size(); ++i)
     {
       const int v = violating.list()[i], rings = m_rings[v];
-      m_steps.cut(patch, v, m_violations[v] < 4 ? 0.4 : 0.);
+      m_step_sizes.reduce(patch, v, m_number_of_violations[v] < 4 ? 0.4 : 0.);
       if(rings == 0)
         continue;
       for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
@@ -231,7 +231,8 @@ private:
           if(!violating.contains(w))
           {
             violating.add(w);
-            m_violations[w] = (std::max)(m_violations[w], m_violations[v] - 1);
+            m_number_of_violations[w] =
+              (std::max)(m_number_of_violations[w], m_number_of_violations[v] - 1);
             m_rings[w] = rings - 1;
           }
         }
@@ -242,14 +243,14 @@ private:
   Interruption* m_interruption;
   Local m_local;
   Sums m_sums;
-  Step_field m_steps;
-  std::vector<Placed_vertex> m_candidate;
+  Vertex_step_sizes m_step_sizes;
+  std::vector<Located_vertex> m_candidate;
   std::vector<Vector_3> m_outside_normals; // per corner
   Patch_quantities m_before, m_after;
   Patch_measure m_accepted;
-  std::vector<int> m_changed;             // faces to be measured
-  std::vector<char> m_is_changed;         // per face
-  std::vector<int> m_violations, m_rings; // per vertex
+  std::vector<int> m_changed;                       // faces to be measured
+  std::vector<char> m_is_changed;                   // per face
+  std::vector<int> m_number_of_violations, m_rings; // per vertex
 };
 
 typedef Backtracking_with<Local_invariants, Sum_invariants> Backtracking;

@@ -18,7 +18,7 @@ namespace internal {
 // folds of the edges between the patch and faces outside it, as the state is now
 inline int boundary_folds(const Optimization_state& state, const Solved_patch& s)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   int count = 0;
   for(const std::array<int, 2>& faces : s.boundary)
     count += is_folded(face_normal(state.mesh, vertex, faces[0]),
@@ -26,7 +26,7 @@ inline int boundary_folds(const Optimization_state& state, const Solved_patch& s
   return count;
 }
 
-// the energy of the stencils that other patches may have changed, as the state is now
+// the energy of the stencils that other patches may have changed, for the current state
 inline double shared_energy(const Optimization_state& state, const Solved_patch& s)
 {
   double sum = 0;
@@ -41,13 +41,13 @@ inline void
 exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& local_vertices)
 {
   for(const int i : local_vertices)
-    std::swap(state.vertices[s.patch.vertices[i]], s.placed[i]);
+    std::swap(state.vertices[s.patch.vertices[i]], s.located[i]);
 }
 
-// Decides whether an accepted patch stays. Another patch of the round may have moved faces across its
-// boundary since it was judged: what folds there is counted anew,
-// and stencils across it are evaluated. Only the vertices that other patches
-// see are exchanged; `commit_inside()` has to follow if it stays.
+// Decides whether an accepted patch is committed. Another patch of the round may have moved faces across
+// its boundary since the acceptance test: folds there are counted again, and shared stencils are evaluated
+// again. Only the vertices of boundary faces and shared stencils are exchanged; `commit_inside()` has to
+// follow.
 inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)
@@ -58,7 +58,7 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
   const int change =
     after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
-  // what is not shared has changed as the patch was judged
+  // energies that are not shared have changed as in the acceptance test
   const double rise = s.shared_stencils.empty() ? 0
                                                 : shared_energy(state, s) - shared_before -
                                                     (after.shared_energy - before.shared_energy);
@@ -74,8 +74,8 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
     before.boundary_defects + change - (after.inner_defects - before.inner_defects);
 }
 
-// Exchanges all other vertices of a patch that stays; its `placed` then holds the old ones. Patches of
-// a round may be committed at the same time.
+// Exchanges all other vertices of a committed patch; its `located` then holds the old ones. Patches of a
+// round may be committed at the same time.
 inline void commit_inside(Optimization_state& state, Solved_patch& s)
 {
   exchange(state, s, s.inner_vertices);

@@ -15,8 +15,8 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Commits the patches of a round, in their order, and calls report(patch) for each that was solved,
-// and update(patch) for each that stays, the latter maybe for several at the same time; `placed` then
-// holds the old vertices. Those that were reported stay also when `report` throws.
+// and update(patch) for each that is committed, possibly for several at the same time; `located` then holds
+// the old vertices. Those that were reported are committed also when `report` throws.
 template <typename ForEachPatch, typename Report, typename Update>
 void commit_round(Optimization_state& state,
                   std::vector<Solved_patch>& solved,
@@ -36,7 +36,7 @@ void commit_round(Optimization_state& state,
         }
         solved[i].drop_vertices();
       },
-      []() {}); // that is soon done
+      []() {}); // short enough
   };
   try
   {

@@ -7,10 +7,10 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/On_surface_mover.h>
-#include <CGAL/Reference_constrained_optimization/internal/on_surface/Search_mover.h>
+#include <CGAL/Reference_constrained_optimization/internal/on_surface/Pattern_search_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
-#include <CGAL/Reference_constrained_optimization/internal/shape/drift_guard.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 
 #include <algorithm>
 #include <array>
@@ -26,57 +26,59 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // how a patch is moved
-enum class Moves { flattened, on_surface, by_search, opening };
+enum class Moves { flattened, on_surface, pattern_search, cluster_separation };
 
-// What patches are solved with; it changes between iterations.
+// Parameters of the solver that change between iterations.
 struct Solver_settings
 {
   Step_limits limits;
-  double bad_density = 0;                                          // of an element beyond it
-  double search_density = std::numeric_limits<double>::infinity(); // elements beyond it, or with
-  double search_cosine = 1;     // the cosine of an angle beyond it, are what a search is for
-  double strain_resistance = 0; // where Newton steps on the surface begin
+  double bad_density = 0;                                          // elements above it are bad
+  double search_density = std::numeric_limits<double>::infinity(); // elements above it, or with
+  double search_cosine = 1;         // the cosine of an angle above it, are searched
+  double strain_regularization = 0; // where Newton steps on the surface begin
 };
 
-// What is known of a patch after it was solved. All patches of a round are kept until it ends: what
-// only the solver needs is dropped.
+// The result of solving a patch. All patches of a round are kept until it ends: data that only the solver
+// needs is dropped.
 struct Solved_patch
 {
   Patch patch; // its faces and vertices
-  std::vector<Patch_samples::Guest> guests;
-  Drift_guard::Known_samples samples;
+  std::vector<Patch_samples::Projected_sample> projected_samples;
+  Shape_bound::Stored_samples samples;
   std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
-  std::vector<int> shared_stencils;         // that depend on vertices which others may move
-  // the free vertices, in local indices: those that other patches see, and the others
+  std::vector<int> shared_stencils;         // with vertices that other patches may move
+  // the free vertices, in local indices: those of boundary faces and shared stencils, and the others
   std::vector<int> outer_vertices, inner_vertices;
   Backtracking::Decision decision;
-  std::vector<Placed_vertex> placed;
+  std::vector<Located_vertex> located;
   Flattening_path path = Flattening_path::failed;
   bool was_tried = false; // has free vertices
   bool is_flattened = false;
   bool overlaps = false;
-  double taken = 0; // mean part of their ways that the vertices went, of the last proposal accepted
-  double missed = 0; // an estimate: the gain that the last proposal promised, times 1 - `taken`
+  // mean fraction of their displacements that the vertices moved, of the last accepted proposal
+  double accepted_fraction = 0;
+  // an estimate: the predicted decrease of the last proposal times 1 - `accepted_fraction`
+  double unrealized_decrease = 0;
   double distortion = 0;
   double flattening_time = 0, optimization_time = 0, acceptance_time = 0;
   std::size_t number_of_faces = 0, number_of_free_vertices = 0; // of the patch; 0: was not solved
 
-  // frees what is of no use after the commit
+  // frees the data that is not needed after the commit
   void drop_vertices()
   {
     patch = Patch();
-    guests = std::vector<Patch_samples::Guest>();
-    samples = Drift_guard::Known_samples();
+    projected_samples = std::vector<Patch_samples::Projected_sample>();
+    samples = Shape_bound::Stored_samples();
     boundary = std::vector<std::array<int, 2>>();
     shared_stencils = std::vector<int>();
     outer_vertices = std::vector<int>();
     inner_vertices = std::vector<int>();
-    placed = std::vector<Placed_vertex>();
+    located = std::vector<Located_vertex>();
   }
 };
 
-// Takes one patch through the steps of the paper: flatten, optimize, map back, accept; or moves it
-// directly on R. One solver for each thread; it keeps its workspace.
+// Solves one patch by the steps of the paper: flatten, optimize, map back, accept; or moves it directly on
+// R. One solver per thread, with its workspace.
 class Patch_solver
 {
 public:
@@ -87,7 +89,7 @@ public:
       m_builder(state.mesh),
       m_flattened_mover(state.reference, parameters.mover, interruption),
       m_on_surface_mover(state.reference, 1, interruption),
-      m_search_mover(state.reference, interruption),
+      m_pattern_search_mover(state.reference, interruption),
       m_cluster_mover(state.reference),
       m_backtracking(interruption),
       m_flattened_proposals(parameters.proposals_per_patch),
@@ -95,14 +97,13 @@ public:
       m_tolerance(parameters.energy_tolerance)
   {}
 
-  // Reads the state, does not write it. Throws Interrupted if it is to end; what became of the patch
-  // then is of no use.
+  // Reads the state, does not write it. Throws Interrupted if it has to stop; the result is then not valid.
   template <typename Density>
   void solve(const std::vector<int>& faces,
              const Optimization_state& state,
              const Density& density,
              const Solver_settings& settings,
-             const Drift_guard& drift_guard,
+             const Shape_bound& shape_bound,
              Moves moves,
              Solved_patch& s)
   {
@@ -111,12 +112,12 @@ public:
     s.acceptance_time = seconds_since(start);
     if(s.patch.number_of_free_vertices == 0)
     {
-      finish(state, drift_guard, Patch_samples(), s);
+      finish(state, shape_bound, Patch_samples(), s);
       return;
     }
     s.was_tried = true;
     check(m_interruption);
-    Patch_samples samples = drift_guard.gather(state, s.patch);
+    Patch_samples samples = shape_bound.gather(state, s.patch);
     check(m_interruption);
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
@@ -128,28 +129,28 @@ public:
       s.distortion = m_flattened_mover.flattening().distortion;
       s.flattening_time = m_flattened_mover.flattening_time();
     }
-    else if(moves == Moves::by_search)
+    else if(moves == Moves::pattern_search)
     {
-      m_search_mover.set_target(settings.search_density, settings.search_cosine);
-      improve(m_search_mover, 1, m_tolerance, state, density, settings, samples, s);
+      m_pattern_search_mover.set_thresholds(settings.search_density, settings.search_cosine);
+      improve(m_pattern_search_mover, 1, m_tolerance, state, density, settings, samples, s);
     }
-    else if(moves == Moves::opening)
+    else if(moves == Moves::cluster_separation)
       improve(m_cluster_mover, 1, m_tolerance, state, density, settings, samples, s);
     else
     {
-      // its steps are cheap: a small gain is worth another
-      m_on_surface_mover.set_strain_resistance(settings.strain_resistance);
+      // its steps are cheap: a small decrease justifies another
+      m_on_surface_mover.set_strain_regularization(settings.strain_regularization);
       improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
               settings, samples, s);
-      s.missed = (1 - s.taken) * m_on_surface_mover.promised();
+      s.unrealized_decrease = (1 - s.accepted_fraction) * m_on_surface_mover.predicted_decrease();
     }
-    finish(state, drift_guard, samples, s);
+    finish(state, shape_bound, samples, s);
   }
 
 private:
-  // notes what the commit needs, and drops what it does not
+  // stores what the commit needs, and drops the rest
   static void finish(const Optimization_state& state,
-                     const Drift_guard& drift_guard,
+                     const Shape_bound& shape_bound,
                      const Patch_samples& samples,
                      Solved_patch& s)
   {
@@ -179,16 +180,16 @@ private:
       for(std::size_t v = 0; v < is_outer.size(); ++v)
         if(s.patch.is_free[v])
           (is_outer[v] ? s.outer_vertices : s.inner_vertices).push_back(int(v));
-      s.samples = drift_guard.samples_of(state.mesh, s.patch, samples);
+      s.samples = shape_bound.stored_samples(state.mesh, s.patch, samples);
       kept.faces = std::move(s.patch.faces);
       kept.vertices = std::move(s.patch.vertices);
-      s.guests = samples.guests;
-      s.placed = std::move(s.patch.placed);
+      s.projected_samples = samples.projected_samples;
+      s.located = std::move(s.patch.located);
     }
     s.patch = std::move(kept);
   }
 
-  // what is prepared once serves several proposals
+  // the flattening or the factorization pattern serves several proposals
   template <typename Mover, typename Density>
   void improve(Mover& mover,
                int maximum_proposals,
@@ -210,13 +211,13 @@ private:
       if(decision.accepted)
       {
         s.decision.after = decision.after;
-        s.patch.placed.swap(m_backtracking.candidate());
+        s.patch.located.swap(m_backtracking.candidate());
         samples = m_backtracking.samples();
-        s.taken = mean_part(s.patch, m_backtracking.steps());
+        s.accepted_fraction = mean_fraction(s.patch, m_backtracking.steps());
       }
       s.acceptance_time += seconds_since(start);
       const double gain = decision.before.energy - decision.after.energy;
-      // a few elements that nothing can open may own the sum
+      // a few elements that cannot be improved may dominate the sum
       const double scale = (std::min)(std::abs(decision.before.energy),
                                       settings.bad_density * double(s.patch.elements.size()));
       proposes = decision.accepted && gain >= tolerance * scale && pass + 1 < maximum_proposals &&
@@ -225,7 +226,7 @@ private:
     s.optimization_time = mover.optimization_time();
   }
 
-  static double mean_part(const Patch& patch, const std::vector<double>& parts)
+  static double mean_fraction(const Patch& patch, const std::vector<double>& parts)
   {
     double sum = 0;
     for(std::size_t v = 0; v < parts.size(); ++v)
@@ -237,7 +238,7 @@ private:
   Patch_builder m_builder;
   Flattened_mover m_flattened_mover;
   On_surface_mover m_on_surface_mover;
-  Search_mover m_search_mover;
+  Pattern_search_mover m_pattern_search_mover;
   Cluster_mover m_cluster_mover;
   Backtracking m_backtracking;
   int m_flattened_proposals, m_on_surface_proposals;

@@ -18,9 +18,9 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Where another visit is worth its time: only where vertices moved last time.
+// The active set: only the surroundings of vertices that moved in the last iteration are visited again.
 
-// Few of many are best followed one by one, many are best looked for, which several threads can do.
+// Few elements are best followed one by one, many by a scan over all, which several threads can do.
 inline bool are_few(const std::vector<char>& is_in)
 {
   const auto number = std::count(is_in.begin(), is_in.end(), char(1));
@@ -84,7 +84,7 @@ faces_around(const Indexed_mesh& mesh, const std::vector<char>& is_center, int r
 template <typename Density>
 double face_density(const Optimization_state& state, const Density& density, int f)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   double largest = 0;
   for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
     largest = (std::max)(largest, element_energy(density, state.elements[e], vertex));
@@ -104,12 +104,12 @@ std::vector<std::pair<double, int>> face_densities(const Optimization_state& sta
   return result;
 }
 
-// What only a flattening may mend: faces that are turned over, folded, or not convex.
+// Faces that only flattening can repair: those that are inverted, folded, or not convex.
 template <typename ConcurrencyTag>
 std::vector<char> defective_faces(const Optimization_state& state)
 {
   const Indexed_mesh& mesh = state.mesh;
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   const int n = mesh.number_of_faces();
   std::vector<char> result(n, 0);
   std::vector<Vector_3> normals(n);
@@ -130,21 +130,21 @@ std::vector<char> defective_faces(const Optimization_state& state)
   return result;
 }
 
-// The faces with an element beyond `bad` where at least `smallest` of them hang together, by edges. A
-// few bad elements are a matter of their vertices; a whole region may have to be laid out anew.
+// The faces with an element beyond `bad` in regions, connected by edges, of at least `smallest` of them. A
+// few bad elements can be improved by moving their vertices; a whole region may have to be flattened.
 template <typename ConcurrencyTag, typename Density>
 std::vector<char>
 bad_regions(const Optimization_state& state, const Density& density, double bad, int smallest)
 {
   const Indexed_mesh& mesh = state.mesh;
-  std::vector<char> result(mesh.number_of_faces(), 0), is_left(mesh.number_of_faces(), 0);
+  std::vector<char> result(mesh.number_of_faces(), 0), is_unvisited(mesh.number_of_faces(), 0);
   for(const std::pair<double, int>& d : face_densities<ConcurrencyTag>(state, density))
-    is_left[d.second] = d.first > bad;
+    is_unvisited[d.second] = d.first > bad;
   for(int f = 0; f < mesh.number_of_faces(); ++f)
   {
-    if(!is_left[f])
+    if(!is_unvisited[f])
       continue;
-    const std::vector<int> region = take_connected_region(mesh, f, is_left);
+    const std::vector<int> region = extract_connected_region(mesh, f, is_unvisited);
     if(int(region.size()) >= smallest)
       for(const int g : region)
         result[g] = 1;
@@ -152,7 +152,7 @@ bad_regions(const Optimization_state& state, const Density& density, double bad,
   return result;
 }
 
-// forgets among the vertices that moved those further than a ring from bad elements
+// removes from the vertices that moved those further than a ring from bad elements
 template <typename ConcurrencyTag, typename Density>
 void keep_near_bad(const Optimization_state& state,
                    const Density& density,
@@ -177,7 +177,7 @@ void keep_near_bad(const Optimization_state& state,
 template <typename ConcurrencyTag, typename Density>
 double lower_half_mean(const Optimization_state& state, const Density& density)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   std::vector<double> densities(state.elements.size());
   for_each_block<ConcurrencyTag>(int(densities.size()), [&](int begin, int end, int) {
     for(int e = begin; e < end; ++e)
@@ -191,12 +191,12 @@ double lower_half_mean(const Optimization_state& state, const Density& density)
   return sum / double(half);
 }
 
-// The energy of the elements if all had the shape of their rest triangles, scaled so that their areas add up
-// to those of the mesh as it is.
+// The energy of the elements if all had the shape of their rest triangles, scaled such that their areas add
+// up to those of the mesh as it is.
 template <typename Density>
 double rest_energy(const Optimization_state& state, const Density& density)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   double area = 0, rest_area = 0;
   for(int e = 0; e < state.elements.size(); ++e)
   {

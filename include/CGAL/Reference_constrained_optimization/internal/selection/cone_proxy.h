@@ -51,7 +51,7 @@ public:
       return proxy;
     const Vector_3 mean = m_sum / m_area;
     const Eigen::Matrix3d covariance = m_outer / m_area - mean * mean.transpose();
-    // On a plane any axis fits: a weight too small to matter elsewhere makes it the mean normal.
+    // On a plane any axis fits: a small weight makes it the mean normal there.
     const double length = mean.norm();
     const double tie = 1e-6;
     Eigen::Matrix3d quadric = covariance;

@@ -21,10 +21,10 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Divides faces among patches for steps on the surface, which need neither disks nor cones: every
-// face goes to the seed that is the fewest faces away. A face is in one patch only, so that all
-// patches are one round; the vertices between two of them rest, and are inside of another patch
-// after the next draw of seeds.
+// Partitions faces into patches for steps on the surface, which need neither disks nor cones: every face is
+// assigned to the seed that is the fewest faces away. A face is in one patch only, so that all patches form
+// one round; the vertices between two of them are fixed, and are inside another patch with the next random
+// seeds.
 class Patch_partition
 {
 public:
@@ -40,24 +40,24 @@ public:
   int patch_size() const { return m_size; }
   void set_patch_size(int size) { m_size = size; }
 
-  // the regions that the wanted faces form are patches, unless one is much too large: those are
-  // divided. The largest first.
-  std::vector<std::vector<int>> divide_regions(const std::vector<char>& is_wanted,
+  // the connected regions of the selected faces are patches; those that are much too large are divided. The
+  // largest first.
+  std::vector<std::vector<int>> divide_regions(const std::vector<char>& is_selected,
                                                CGAL::Random& random)
   {
     std::vector<std::vector<int>> patches;
-    std::vector<char> is_left = is_wanted, is_large;
+    std::vector<char> is_unvisited = is_selected, is_large;
     for(int start = 0; start < m_mesh.number_of_faces(); ++start)
     {
-      if(!is_left[start])
+      if(!is_unvisited[start])
         continue;
-      std::vector<int> region = take_connected_region(m_mesh, start, is_left);
+      std::vector<int> region = extract_connected_region(m_mesh, start, is_unvisited);
       if(region.size() <= std::size_t((std::min)(3 * m_size, m_largest)))
       {
         patches.push_back(std::move(region));
         continue;
       }
-      is_large.resize(is_wanted.size(), 0);
+      is_large.resize(is_selected.size(), 0);
       for(const int f : region)
         is_large[f] = 1;
     }
@@ -69,24 +69,24 @@ public:
   }
 
   // patches of about the given number of faces, the largest first
-  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted,
+  std::vector<std::vector<int>> divide(const std::vector<char>& is_selected,
                                        CGAL::Random& random,
                                        Interruption* interruption = nullptr)
   {
-    std::vector<int> wanted;
+    std::vector<int> selected;
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
-      if(is_wanted[f])
-        wanted.push_back(f);
-    const std::size_t number = (wanted.size() + m_size - 1) / m_size;
-    std::vector<int> seeds = wanted;
+      if(is_selected[f])
+        selected.push_back(f);
+    const std::size_t number = (selected.size() + m_size - 1) / m_size;
+    std::vector<int> seeds = selected;
     for(std::size_t i = 0; i < number; ++i)
       std::swap(seeds[i], seeds[std::size_t(random.get_int(int(i), int(seeds.size())))]);
     seeds.resize(number);
     check(interruption);
-    int cells = grow(wanted, is_wanted, seeds);
+    int cells = grow(selected, is_selected, seeds);
     check(interruption);
-    if(number > 1) // sizes are more even around faces in the middle
-      cells = grow(wanted, is_wanted, centers(wanted, cells));
+    if(number > 1) // a second pass from the centers makes sizes more even
+      cells = grow(selected, is_selected, centers(selected, cells));
     check(interruption);
 
     std::vector<std::vector<int>> patches(cells);
@@ -104,25 +104,26 @@ private:
       [](const std::vector<int>& a, const std::vector<int>& b) { return a.size() > b.size(); });
   }
 
-  // gives all wanted faces to cells that grow from the seeds, and from further ones where none of these
-  // leads or may lead; m_queue holds them in the order in which they were reached. Returns the number of cells.
-  int grow(const std::vector<int>& wanted,
-           const std::vector<char>& is_wanted,
+  // assigns all selected faces to cells that grow from the seeds, and from further ones where faces are not
+  // reached from these; m_queue holds them in the order in which they were reached. Returns the number of
+  // cells.
+  int grow(const std::vector<int>& selected,
+           const std::vector<char>& is_selected,
            const std::vector<int>& seeds)
   {
     m_cell.assign(m_mesh.number_of_faces(), -1);
     m_queue.clear();
     int cells = 0;
     m_count.assign(seeds.size(), 0);
-    const auto take = [&](int f, int cell) {
+    const auto assign = [&](int f, int cell) {
       m_cell[f] = cell;
       ++m_count[cell];
       m_queue.push_back(f);
     };
     for(const int f : seeds)
-      take(f, cells++);
+      assign(f, cells++);
     std::size_t next = 0;
-    for(const int start : wanted)
+    for(const int start : selected)
     {
       for(; next < m_queue.size(); ++next)
       {
@@ -130,33 +131,33 @@ private:
         for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         {
           const int o = m_mesh.opposite[c];
-          if(o >= 0 && is_wanted[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0 &&
+          if(o >= 0 && is_selected[m_mesh.corner_face[o]] && m_cell[m_mesh.corner_face[o]] < 0 &&
              m_count[m_cell[f]] < m_largest)
-            take(m_mesh.corner_face[o], m_cell[f]);
+            assign(m_mesh.corner_face[o], m_cell[f]);
         }
       }
       if(m_cell[start] < 0)
       {
         m_count.push_back(0);
-        take(start, cells++);
+        assign(start, cells++);
       }
     }
     return cells;
   }
 
-  // of each cell a face that is the furthest from where it ends
-  std::vector<int> centers(const std::vector<int>& wanted, int cells)
+  // of each cell a face that is furthest from its boundary
+  std::vector<int> centers(const std::vector<int>& selected, int cells)
   {
     std::vector<char> is_reached(m_mesh.number_of_faces(), 0);
     m_queue.clear();
-    const auto ends = [&](int f) {
+    const auto is_boundary_face = [&](int f) {
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         if(m_mesh.opposite[c] < 0 || m_cell[m_mesh.corner_face[m_mesh.opposite[c]]] != m_cell[f])
           return true;
       return false;
     };
-    for(const int f : wanted)
-      if(ends(f))
+    for(const int f : selected)
+      if(is_boundary_face(f))
       {
         is_reached[f] = 1;
         m_queue.push_back(f);
@@ -176,8 +177,8 @@ private:
         }
       }
     }
-    // a closed component that is one cell ends nowhere
-    for(const int f : wanted)
+    // a closed component that is one cell has no boundary
+    for(const int f : selected)
       if(centers[m_cell[f]] < 0)
         centers[m_cell[f]] = f;
     return centers;

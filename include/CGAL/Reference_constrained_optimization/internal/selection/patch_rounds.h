@@ -15,9 +15,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Rounds of face-disjoint patches. No patch of a round starts within `halo` rings of another one: it
-// would be squeezed and touch little. With a halo as large as the mesh a round has one patch of each
-// connected component.
+// Rounds of face-disjoint patches. No patch of a round starts within `halo` rings of another one, as it
+// would remain small. With a halo as large as the mesh a round has one patch of each connected component.
 class Patch_rounds
 {
 public:

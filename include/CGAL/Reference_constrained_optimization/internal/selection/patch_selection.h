@@ -6,7 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_PATCH_SELECTION_H
 
 #include <CGAL/Reference_constrained_optimization/internal/selection/cone_proxy.h>
-#include <CGAL/Reference_constrained_optimization/internal/selection/disk_guard.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/disk_topology.h>
 
 #include <algorithm>
 #include <functional>
@@ -23,13 +23,14 @@ struct Selection_parameters
   double developability_threshold = 0.25; // epsilon_d
   int maximum_patch_size = 0;             // in faces; 0: chosen by the size of the mesh
   int exempt_size = 70;                   // the first faces of a patch need not fit the proxy
-  // As in the paper: the cheapest face comes next, and the proxy stays as it is at the seed. What is
-  // over the threshold then ends the patch, for all that is left costs as much.
+  // As in the paper: the face of least cost comes next, and the proxy is that of the seed. The first face
+  // above the threshold then ends the patch, since all others cost as much.
   bool grows_by_cost = false;
-  bool visits_all_well = true; // else a face may be at the boundary of the only patch that it is in
+  // else a face may be at the boundary of the only patch that contains it
+  bool requires_interior = true;
 };
 
-// Normals, areas and centroids of the faces, as the growing needs them.
+// Normals, areas and centroids of the faces, for growing patches.
 struct Face_geometry
 {
   std::vector<Vector_3> normals; // of unit length, or zero
@@ -46,7 +47,7 @@ struct Face_geometry
       set(mesh, f, [&](int v) -> const Vector_3& { return points[v]; });
   }
 
-  // the figures of one face, for points given by a function of the vertex
+  // those of one face, for points given by a function of the vertex
   template <typename PointAccess>
   void set(const Indexed_mesh& mesh, int f, const PointAccess& point)
   {
@@ -79,7 +80,7 @@ public:
       m_vertex_stamp(mesh.number_of_vertices(), 0)
   {}
 
-  // the faces of a patch around `seed`; `is_taken(f)` tells faces that it may not contain
+  // the faces of a patch around `seed`; faces with `is_taken(f)` are excluded
   template <typename IsTaken>
   std::vector<int> grow(int seed, const Face_geometry& geometry, const IsTaken& is_taken)
   {
@@ -104,8 +105,8 @@ public:
       const bool is_exempt = int(patch.size()) < m_parameters.exempt_size;
       if(!is_exempt && !(proxy.cost(geometry.normals[f]) < m_parameters.developability_threshold))
         continue;
-      if(!keeps_disk(m_mesh, f, in_patch, vertex_in_patch))
-        continue; // asked again when another neighbour joins
+      if(!preserves_disk(m_mesh, f, in_patch, vertex_in_patch))
+        continue; // tested again when another neighbour joins
 
       patch.push_back(f);
       m_face_stamp[f] = m_stamp;
@@ -133,11 +134,11 @@ public:
     return patch;
   }
 
-  // The faces of the last patch grown that are done with. That is every face outside the 2-ring of
-  // its boundary (an edge of the mesh's own border is no boundary here), and always the seed. On
-  // parts as thin as a few faces, where every disk is cut open, no face is ever outside: a face is
-  // also done with when all its vertices were inside two patches since `forget_visits()`; and, unless
-  // all are to be visited well, when one of them is inside this one.
+  // The faces of the last patch that need no further visit. These are the faces outside the 2-ring of its
+  // boundary (an edge of the mesh's own border is no boundary here), and always the seed. In regions as
+  // thin as a few faces no face is ever outside: a face is also complete when all its vertices were inside
+  // two patches since `clear_visits()`; and, unless `requires_interior` is set, when one of them is inside
+  // this one.
   std::vector<int> touched(const std::vector<int>& patch)
   {
     ++m_ring_stamp;
@@ -173,14 +174,14 @@ public:
     {
       if(!touches(f, 2 * m_ring_stamp))
         ++m_visits[f];
-      if(f == patch.front() || (!m_parameters.visits_all_well && has_vertex_inside(f)) ||
+      if(f == patch.front() || (!m_parameters.requires_interior && has_vertex_inside(f)) ||
          !touches(f, 2 * m_ring_stamp - 1) || m_visits[f] >= 2)
         result.push_back(f);
     }
     return result;
   }
 
-  void forget_visits() { m_visits.assign(m_mesh.number_of_faces(), 0); }
+  void clear_visits() { m_visits.assign(m_mesh.number_of_faces(), 0); }
 
 private:
   // the best fit among the 1-rings of the seed's vertices

@@ -15,15 +15,15 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The distances between a patch and R, both ways, with what bounds them; nothing where they are not bounded.
-// Directions are unit vectors from R to the mesh, known where the barrier is felt.
+// The samples of the distance between a patch and R in both directions, with their bounds; empty if it is
+// not bounded. Directions are unit vectors from R to the mesh, known where the barrier is active.
 struct Patch_samples
 {
   Drift_barrier barrier;
   double bound = 0;
   const std::vector<double>* local_bounds =
-    nullptr;                        // per triangle of R, if it is not the same everywhere
-  std::vector<double> least_bounds; // per polygon, if any is beyond its bound from the start
+    nullptr;                          // per triangle of R, if it is not the same everywhere
+  std::vector<double> minimum_bounds; // per polygon, if any exceeds its bound on input
 
   // a point of the mesh, see drift_samples.h
   struct Sample
@@ -35,18 +35,18 @@ struct Patch_samples
   };
   std::vector<Sample> samples;
 
-  // a point of R whose closest point of the mesh is in the patch
-  struct Guest
+  // a sample of R whose closest point of the mesh is in the patch
+  struct Projected_sample
   {
-    int witness;     // of R
-    int polygon;     // local face that holds its closest point
-    double distance; // to it
+    int reference_sample; // of R
+    int polygon;          // local face that holds its closest point
+    double distance;      // to it
     double bound;
     int triangle = -1; // local
     Vector_3 barycentric = Vector_3::Zero();
     Vector_3 direction = Vector_3::Zero();
   };
-  std::vector<Guest> guests;
+  std::vector<Projected_sample> projected_samples;
 
   bool are_bounded() const { return !samples.empty(); }
 
@@ -54,17 +54,17 @@ struct Patch_samples
   double bound_at(int polygon, int reference_face) const
   {
     const double here = local_bounds ? (*local_bounds)[reference_face] : bound;
-    return least_bounds.empty() ? here : (std::max)(here, least_bounds[polygon]);
+    return minimum_bounds.empty() ? here : (std::max)(here, minimum_bounds[polygon]);
   }
 
-  // what the barrier adds
+  // the energy of the barrier
   double energy() const
   {
     double sum = 0;
     for(const Sample& sample : samples)
       sum += barrier.value(sample.distance, sample.bound);
-    for(const Guest& guest : guests)
-      sum += barrier.value(guest.distance, guest.bound);
+    for(const Projected_sample& projected_sample : projected_samples)
+      sum += barrier.value(projected_sample.distance, projected_sample.bound);
     return sum;
   }
 };

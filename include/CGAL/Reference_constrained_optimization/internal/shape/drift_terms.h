@@ -15,9 +15,9 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The drift barrier as Newton's method sees it: the distance of a sample in a triangle is linear in
-// the coordinates u of the triangle's three vertices. The closest point goes along with the sample, so
-// that only the motion across the surface counts: the row of vertex k is b_k T_k^t n.
+// The drift barrier linearized for Newton's method: the distance of a sample in a triangle is linear in the
+// coordinates u of the triangle's three vertices. The closest point moves with the sample, so that only the
+// motion normal to the surface counts: the row of vertex k is b_k T_k^t n.
 class Drift_terms
 {
 public:
@@ -47,12 +47,13 @@ public:
     for(int s = 0; s < int(samples.samples.size()); ++s)
     {
       const Patch_samples::Sample& sample = samples.samples[s];
-      if(Drift_barrier::is_felt(sample.distance, sample.bound))
+      if(Drift_barrier::is_active(sample.distance, sample.bound))
         add(s / 4, sample_barycentric(s % 4), sample.distance, sample.bound, sample.direction);
     }
-    for(const Patch_samples::Guest& guest : samples.guests)
-      if(Drift_barrier::is_felt(guest.distance, guest.bound))
-        add(guest.triangle, guest.barycentric, guest.distance, guest.bound, guest.direction);
+    for(const Patch_samples::Projected_sample& projected_sample : samples.projected_samples)
+      if(Drift_barrier::is_active(projected_sample.distance, projected_sample.bound))
+        add(projected_sample.triangle, projected_sample.barycentric, projected_sample.distance,
+            projected_sample.bound, projected_sample.direction);
   }
 
   const std::vector<Term>& terms() const { return m_terms; }
@@ -64,20 +65,20 @@ private:
   std::vector<Term> m_terms;
 };
 
-// the triangles in which terms may be; none if the barrier is off
-inline std::vector<std::array<int, 3>> drift_carriers(const Patch& patch,
-                                                      const Patch_samples& samples)
+// the triangles of the terms; none if the barrier is off
+inline std::vector<std::array<int, 3>> drift_term_triangles(const Patch& patch,
+                                                            const Patch_samples& samples)
 {
-  std::vector<std::array<int, 3>> carriers;
+  std::vector<std::array<int, 3>> term_triangles;
   if(!samples.are_bounded())
-    return carriers;
+    return term_triangles;
   const Indexed_mesh& triangles = patch.triangles();
   for(int t = 0; t < triangles.number_of_faces(); ++t)
   {
     const int* v = &triangles.corner_vertex[3 * t];
-    carriers.push_back({{v[0], v[1], v[2]}});
+    term_triangles.push_back({{v[0], v[1], v[2]}});
   }
-  return carriers;
+  return term_triangles;
 }
 
 } // namespace internal

@@ -14,13 +14,13 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Looks how far the samples of changed faces are from R once vertices have gone from where the patch has
-// them to `placed`. None is further away than before by more than its displacement: as long as the barrier
-// is not felt there, that is good enough.
+// Updates the distances of the samples of changed faces from R when the vertices of the patch move to
+// `located`. The old distance plus the displacement is an upper bound, which suffices as long as the
+// barrier is not active there.
 inline void update_samples(const Patch& patch,
                            const Patch_samples& before,
                            const Reference_surface& reference,
-                           const std::vector<Placed_vertex>& placed,
+                           const std::vector<Located_vertex>& located,
                            const std::vector<int>& changed,
                            const std::vector<char>& is_changed,
                            Patch_samples& now)
@@ -28,8 +28,8 @@ inline void update_samples(const Patch& patch,
   if(!before.are_bounded())
     return;
   const Indexed_mesh& triangles = patch.triangles();
-  const auto old_vertex = [&](int v) -> const Placed_vertex& { return patch.placed[v]; };
-  const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
+  const auto old_vertex = [&](int v) -> const Located_vertex& { return patch.located[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return located[v]; };
   for(const int f : changed)
     for(int t = patch.triangle_of(f); t < triangles.number_of_faces() && patch.polygon_of(t) == f;
         ++t)
@@ -37,7 +37,7 @@ inline void update_samples(const Patch& patch,
       {
         const int s = sample_of(patch, t, i);
         if(s < 0 || (s != 4 * t + i && is_changed[patch.polygon_of(s / 4)]))
-          continue; // it is the other triangle's
+          continue; // it belongs to the other triangle
         Patch_samples::Sample& sample = now.samples[s];
         const Vector_3 barycentric = sample_barycentric(s % 4);
         const double displacement = (triangle_point(triangles, vertex, s / 4, barycentric) -
@@ -45,24 +45,24 @@ inline void update_samples(const Patch& patch,
                                       .norm();
         sample.distance = before.samples[s].distance + displacement;
         sample.bound = before.samples[s].bound;
-        if(Drift_barrier::is_felt(sample.distance, sample.bound))
+        if(Drift_barrier::is_active(sample.distance, sample.bound))
           locate_sample(patch, before, reference, vertex, s, sample);
       }
 }
 
-// The same for the points of R that are projected onto the patch.
-inline void update_guests(const Patch& patch,
-                          const Patch_samples& before,
-                          const Reference_surface& reference,
-                          const std::vector<Placed_vertex>& placed,
-                          const std::vector<int>& changed,
-                          Patch_samples& now)
+// The same for the reference samples that are projected onto the patch.
+inline void update_projected_samples(const Patch& patch,
+                                     const Patch_samples& before,
+                                     const Reference_surface& reference,
+                                     const std::vector<Located_vertex>& located,
+                                     const std::vector<int>& changed,
+                                     Patch_samples& now)
 {
-  if(before.guests.empty())
+  if(before.projected_samples.empty())
     return;
   const Indexed_mesh& mesh = patch.polygons;
-  const auto vertex = [&](int v) -> const Placed_vertex& { return placed[v]; };
-  // a descent looks at the faces around the one where it begins, too
+  const auto vertex = [&](int v) -> const Located_vertex& { return located[v]; };
+  // the local search also visits the faces around the one where it starts
   std::vector<char> is_near(patch.vertices.size(), 0);
   for(const int f : changed)
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -73,24 +73,25 @@ inline void update_guests(const Patch& patch,
         return true;
     return false;
   };
-  for(std::size_t i = 0; i < now.guests.size(); ++i)
+  for(std::size_t i = 0; i < now.projected_samples.size(); ++i)
   {
-    if(!is_near_face(now.guests[i].polygon))
+    if(!is_near_face(now.projected_samples[i].polygon))
       continue;
-    const Patch_samples::Guest& guest = before.guests[i];
+    const Patch_samples::Projected_sample& projected_sample = before.projected_samples[i];
     double displacement = 0;
-    for(int c = mesh.face_begin[guest.polygon]; c < mesh.face_begin[guest.polygon + 1]; ++c)
+    for(int c = mesh.face_begin[projected_sample.polygon];
+        c < mesh.face_begin[projected_sample.polygon + 1]; ++c)
     {
       const int v = mesh.corner_vertex[c];
       displacement =
-        (std::max)(displacement, (placed[v].position - patch.placed[v].position).norm());
+        (std::max)(displacement, (located[v].position - patch.located[v].position).norm());
     }
-    if(Drift_barrier::is_felt(guest.distance + displacement, guest.bound))
-      locate_guest(patch, reference, vertex, now.guests[i]);
+    if(Drift_barrier::is_active(projected_sample.distance + displacement, projected_sample.bound))
+      locate_projected_sample(patch, reference, vertex, now.projected_samples[i]);
     else
     {
-      now.guests[i] = guest;
-      now.guests[i].distance += displacement;
+      now.projected_samples[i] = projected_sample;
+      now.projected_samples[i].distance += displacement;
     }
   }
 }

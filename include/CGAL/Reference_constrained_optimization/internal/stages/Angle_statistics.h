@@ -17,12 +17,12 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The smallest angles of faces, their mean and minimum, and the energy, followed while a few faces change.
+// The smallest angles of faces, their mean and minimum, and the energy, updated as a few faces change.
 template <typename Densities>
 class Angle_statistics
 {
 public:
-  // the energy is by these densities
+  // `densities`: those of the energy
   Angle_statistics(const Optimization_state& state, const Densities& densities)
     : m_state(state),
       m_densities(densities)
@@ -31,23 +31,23 @@ public:
   // per face: its smallest; 180 if none of its vertices may move
   const std::vector<double>& angles() const { return m_angles; }
   double minimum() const { return m_minimum; }                 // of all faces that may change
-  double number_of_faces() const { return m_number_of_faces; } // that are to be optimized
+  double number_of_faces() const { return m_number_of_faces; } // that are optimized
 
-  // A vertex bounds the smallest angle of the faces around it, as long as the sum of the angles there
-  // stays: the least of these is their mean at most, and the largest, the mean at least, leaves no more
-  // for the other two of its face.
-  double bound(int f) const
+  // The angle sum at a vertex bounds the smallest angle of the faces around it: the least of the angles
+  // there is their mean at most, and the largest, the mean at least, leaves the rest to the other two of
+  // its face.
+  double angle_bound(int f) const
   {
     const Indexed_mesh& mesh = m_state.mesh;
     const auto position = [&](int v) -> const Vector_3& { return m_state.vertices[v].position; };
     double least = 60;
     for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      least = (std::min)(least, shared_angle(mesh, position, mesh.corner_vertex[c]));
+      least = (std::min)(least, vertex_angle_bound(mesh, position, mesh.corner_vertex[c]));
     return least;
   }
 
   static constexpr double negligible = 0.01; // degrees
-  bool can_rise(int f) const { return m_angles[f] <= bound(f) - negligible; }
+  bool can_improve(int f) const { return m_angles[f] <= angle_bound(f) - negligible; }
 
   double mean() const { return m_sum / m_number_of_faces; }
   double energy() const { return m_energy + energy_of_stencils(m_state); }
@@ -61,12 +61,12 @@ public:
     std::vector<double> angles(n);
     m_number_of_faces = 0;
     for(int f = 0; f < n; ++f)
-      m_number_of_faces += m_state.counts(f);
+      m_number_of_faces += m_state.is_optimized(f);
     m_energies.resize(n);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
       for(int f = begin; f < end; ++f)
       {
-        angles[f] = m_state.counts(f) ? smallest_angle(f) : 0;
+        angles[f] = m_state.is_optimized(f) ? smallest_angle(f) : 0;
         m_energies[f] = face_energy(f);
         bool may_change = false;
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
@@ -102,7 +102,7 @@ public:
 private:
   double face_energy(int f) const
   {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return m_state.vertices[v]; };
     double sum = 0;
     for(int e = m_state.elements.begin(f); e < m_state.elements.end(f); ++e)
       sum += element_energy(m_densities, m_state.elements[e], vertex);
@@ -111,9 +111,9 @@ private:
 
   double smallest_angle(int f) const
   {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_state.vertices[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return m_state.vertices[v]; };
     if(m_state.elements.begin(f) == m_state.elements.end(f))
-      return 180; // it is none of the stage's
+      return 180; // not optimized
     return degrees_per_radian *
            std::acos((std::min)(1., smallest_angle_cosine(m_state.mesh, vertex, f)));
   }
@@ -121,7 +121,7 @@ private:
   const Optimization_state& m_state;
   const Densities& m_densities;
   std::vector<double> m_angles, m_energies; // per face
-  double m_number_of_faces = 0;             // that are to be optimized
+  double m_number_of_faces = 0;             // that are optimized
   double m_energy = 0;                      // of all
   double m_minimum = 0;                     // of all faces that may change
   double m_sum = 0;                         // of all

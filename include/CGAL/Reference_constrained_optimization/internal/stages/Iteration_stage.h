@@ -33,7 +33,7 @@ public:
       m_is_active(visits.free_faces())
   {}
 
-  // from a state of which `before` are the figures; false if it was cut short
+  // `before` is the measure of the initial state; false if it was interrupted
   bool run(Global_measure before)
   {
     const Indexed_mesh& mesh = m_state.mesh;
@@ -53,25 +53,27 @@ public:
       if(!complete)
         return false;
       if(m_state.stencils.empty())
-        settings.limits.density = (std::min)(settings.limits.density, after.worst);
+        settings.limits.density = (std::min)(settings.limits.density, after.largest_density);
       const auto& progress = m_visits.round_solver.progress();
-      if(progress.could_move > 0)
-        settings.strain_resistance =
-          (std::min)(largest_resistance, adapted_resistance(settings.strain_resistance,
-                                                            progress.taken / progress.could_move));
-      m_held_up = is_held_up() ? m_held_up + 1 : 0;
-      const int patience = 5; // large patches may go slowly, but they go further
-      const bool divides = m_visits.judges_angles && m_held_up >= patience && divide_further();
-      const bool falls = has_fallen(before.capped_energy, after.capped_energy);
+      if(progress.number_of_movable_vertices > 0)
+        settings.strain_regularization = (std::min)(
+          largest_regularization,
+          adapted_regularization(settings.strain_regularization,
+                                 progress.sum_of_fractions / progress.number_of_movable_vertices));
+      m_stalled_iterations = is_stalled() ? m_stalled_iterations + 1 : 0;
+      const int stall_limit = 5; // large patches may be slow, but they allow larger displacements
+      const bool has_smaller_patches =
+        m_visits.has_angle_criterion && m_stalled_iterations >= stall_limit && reduce_patch_size();
+      const bool falls = has_decreased(before.capped_energy, after.capped_energy);
       const bool repairs =
-        has_fallen(before.energy, after.energy) || after.defects() < before.defects();
+        has_decreased(before.energy, after.energy) || after.defects() < before.defects();
       std::vector<char> moved = progress.moved;
       if(!falls && repairs)
         keep_near_bad<ConcurrencyTag>(m_state, m_visits.densities(), settings.bad_density,
-                                      moved); // all is well elsewhere
+                                      moved); // everything else has converged
       const bool moves = std::find(moved.begin(), moved.end(), char(1)) != moved.end();
-      // without a test the energy may rise: that is not convergence either
-      const bool rises = parameters.accepts_all && has_fallen(after.energy, before.energy);
+      // without a test the energy may rise, which is no convergence
+      const bool rises = parameters.accepts_all && has_decreased(after.energy, before.energy);
       before = after;
       if(m_visits.advance_densities(before))
         m_is_active = m_visits.free_faces();
@@ -80,9 +82,11 @@ public:
         if(parameters.use_active_set)
           m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       }
-      else if((!has_fallen(after.capped_energy + progress.missed, after.capped_energy) ||
-               !(divides || ((m_held_up > 0 || progress.has_refused) && divide_further()))) &&
-              !starts_again(after.capped_energy))
+      else if((!has_decreased(after.capped_energy + progress.unrealized_decrease,
+                              after.capped_energy) ||
+               !(has_smaller_patches ||
+                 ((m_stalled_iterations > 0 || progress.has_rejected) && reduce_patch_size()))) &&
+              !restarts(after.capped_energy))
       {
         m_visits.result.status = Status::converged;
         return true;
@@ -104,55 +108,56 @@ private:
     }
   }
 
-  // What is turned over or folded, or bad over a whole region, is flattened: steps on the surface do
-  // not mend it. Then all regions are optimized on the surface, where that is allowed.
+  // Inverted or folded faces and bad regions are flattened, since steps on the surface do not repair them.
+  // Then all regions are optimized on the surface, where that is enabled.
   bool visit_active()
   {
     if(!m_visits.parameters.use_on_surface_steps)
       return m_visits.flatten(m_is_active, m_visits.selection);
-    std::vector<char> is_wanted;
+    std::vector<char> is_selected;
     std::vector<std::vector<int>> patches;
     const std::size_t iteration = m_visits.result.number_of_iterations;
-    // what flattened patches do not mend at once they hardly ever do: they try more and more rarely
-    const bool flattens = !m_visits.judges_angles || iteration >= m_next_to_flatten;
+    // flattened patches repair most defects at once or never: they are visited more and more rarely
+    const bool flattens = !m_visits.has_angle_criterion || iteration >= m_next_flattening_iteration;
     if(flattens)
-      m_next_to_flatten = 2 * iteration + 1;
-    // the second patches do not depend on what the first ones do
+      m_next_flattening_iteration = 2 * iteration + 1;
+    // the second patches do not depend on the first ones
     call_both<ConcurrencyTag>(
       [&]() {
         if(flattens)
-          is_wanted = faces_to_flatten();
+          is_selected = faces_to_flatten();
       },
       [&]() { patches = m_visits.divide(m_is_active); });
-    return (!flattens || m_visits.flatten(is_wanted, m_visits.selection)) &&
-           !m_visits.interruption.stops() &&
+    return (!flattens || m_visits.flatten(is_selected, m_visits.selection)) &&
+           !m_visits.interruption.should_stop() &&
            m_visits.round_solver.solve(patches, Moves::on_surface, m_visits.densities(),
                                        m_visits.settings);
   }
 
-  // the active faces that are turned over or folded or in bad regions, and those around them
+  // the active faces that are inverted or folded or in bad regions, and those around them
   std::vector<char> faces_to_flatten() const
   {
     const Indexed_mesh& mesh = m_state.mesh;
-    // sharp triangles are a matter of their vertices, stretched ones of what is around them; in a fine
-    // mesh what was one triangle is many
+    // sharp triangles depend on their vertices, stretched ones on their surroundings; in a fine mesh
+    // regions have more faces
     const int smallest_region =
-      m_visits.judges_angles ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
-    std::vector<char> is_wanted = defective_faces<ConcurrencyTag>(m_state);
+      m_visits.has_angle_criterion ? (std::max)(20, mesh.number_of_faces() / 2500) : 1;
+    std::vector<char> is_selected = defective_faces<ConcurrencyTag>(m_state);
     m_visits.interruption.check();
     const std::vector<char> is_bad = bad_regions<ConcurrencyTag>(
       m_state, m_visits.densities(), 2 * m_visits.settings.bad_density, smallest_region);
-    for(std::size_t f = 0; f < is_wanted.size(); ++f)
-      is_wanted[f] = is_wanted[f] || is_bad[f];
+    for(std::size_t f = 0; f < is_selected.size(); ++f)
+      is_selected[f] = is_selected[f] || is_bad[f];
     m_visits.interruption.check();
-    is_wanted = faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_wanted), 2);
-    for(std::size_t f = 0; f < is_wanted.size(); ++f)
-      is_wanted[f] = is_wanted[f] && m_is_active[f];
-    return is_wanted;
+    is_selected =
+      faces_around<ConcurrencyTag>(mesh, vertices_of<ConcurrencyTag>(mesh, is_selected), 2);
+    for(std::size_t f = 0; f < is_selected.size(); ++f)
+      is_selected[f] = is_selected[f] && m_is_active[f];
+    return is_selected;
   }
 
-  // What is left to gain is what the energy has above that of elements that are all at rest.
-  bool has_fallen(double before, double after) const
+  // The decrease is relative to the excess of the energy over that of elements that are all at rest.
+  bool has_decreased(double before, double after) const
   {
     const double floor = 0.001;
     const double excess = before - m_visits.rest_energy();
@@ -161,16 +166,17 @@ private:
     return before - after > m_visits.parameters.energy_tolerance * scale;
   }
 
-  // Whether a few places hold up the large patches that they are in: the steps of the last iteration
-  // were cut to small parts.
-  bool is_held_up() const
+  // Whether the steps of the last iteration were cut to small fractions: a few vertices limit the large
+  // patches that contain them.
+  bool is_stalled() const
   {
     const auto& progress = m_visits.round_solver.progress();
-    return progress.taken < 0.8 * progress.could_move; // neither is counted for flattened patches
+    // both count patches on the surface only
+    return progress.sum_of_fractions < 0.8 * progress.number_of_movable_vertices;
   }
 
-  // From the next iteration on patches are smaller. False if they are small enough.
-  bool divide_further()
+  // Makes the patches smaller from the next iteration on. False if they are small enough.
+  bool reduce_patch_size()
   {
     const int smallest = 1000, parts = 4;
     const int size = m_visits.partition.patch_size() / parts;
@@ -180,33 +186,33 @@ private:
     return true;
   }
 
-  // Where small patches have come to rest, patches larger than those at first may go on: what spreads
-  // over all of a region is a matter of theirs, once no single place in it holds them up. Everything
-  // is visited again, and again as long as that pays; false if it did not.
-  bool starts_again(double energy)
+  // Restarts with patches larger than the initial ones where small patches have converged: changes that
+  // involve a whole region need large patches, once no single vertex limits their steps. Everything becomes
+  // active again, as long as the energy has decreased since the last time; false if it has not.
+  bool restarts(double energy)
   {
     const Selection_parameters& selection = m_visits.parameters.selection;
-    const bool pays = !m_has_rested || has_fallen(m_resting_energy, energy);
-    if(!m_visits.judges_angles || !m_visits.parameters.use_on_surface_steps || !pays)
+    const bool has_improved = !m_has_converged || has_decreased(m_converged_energy, energy);
+    if(!m_visits.has_angle_criterion || !m_visits.parameters.use_on_surface_steps || !has_improved)
       return false;
     const int times = 4;
-    m_has_rested = true;
-    m_resting_energy = energy;
+    m_has_converged = true;
+    m_converged_energy = energy;
     const int size = on_surface_patch_size(selection, m_state.mesh),
               largest = largest_patch_size(selection);
     m_visits.partition.set_patch_size(size < largest / times ? times * size : largest);
-    m_held_up = 0;
+    m_stalled_iterations = 0;
     m_is_active = m_visits.free_faces();
     return true;
   }
 
   Visits& m_visits;
   const Optimization_state& m_state;
-  std::vector<char> m_is_active;     // per face
-  std::size_t m_next_to_flatten = 0; // iteration
-  int m_held_up = 0;                 // iterations in a row
-  bool m_has_rested = false;
-  double m_resting_energy = 0; // when iterations came to rest the last time
+  std::vector<char> m_is_active; // per face
+  std::size_t m_next_flattening_iteration = 0;
+  int m_stalled_iterations = 0; // successive ones
+  bool m_has_converged = false;
+  double m_converged_energy = 0; // at the last convergence
 };
 
 } // namespace internal

@@ -27,9 +27,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// What all stages have in common: the mesh on its reference, the energy as it is optimized now, and the ways
-// to visit faces in patches. A visit returns false if it was cut short; the state then holds what was
-// accepted.
+// The common data of all stages: the mesh on its reference, the current energy, and functions that visit
+// faces in patches. A visit returns false if it was interrupted; the state then holds the accepted patches.
 template <typename ConcurrencyTag_, typename Densities_, typename Visitor>
 class Patch_visits
 {
@@ -39,7 +38,7 @@ public:
 
   Patch_visits(Optimization_state& state_,
                const Densities& target,
-               double energy, // by these, at the start
+               double energy, // of `target`, at the start
                const Loop_parameters& parameters_,
                Visitor& visitor_,
                Result& result_,
@@ -51,9 +50,9 @@ public:
       visitor(visitor_),
       result(result_),
       interruption(interruption_),
-      judges_angles(state_.elements.criterion() == Element_criterion::smallest_angle),
-      selection(state_.mesh, sized(parameters_, state_.mesh, judges_angles)),
-      small_selection(state_.mesh, small(parameters_.selection, state_.mesh)),
+      has_angle_criterion(state_.elements.criterion() == Element_criterion::smallest_angle),
+      selection(state_.mesh, with_patch_size(parameters_, state_.mesh, has_angle_criterion)),
+      small_selection(state_.mesh, with_small_patch_size(parameters_.selection, state_.mesh)),
       partition(state_.mesh,
                 on_surface_patch_size(parameters_.selection, state_.mesh),
                 largest_patch_size(parameters_.selection)),
@@ -66,31 +65,31 @@ public:
       m_rounds(state_.mesh, parameters_.halo)
   {
     settings.limits.accepts_all = parameters.accepts_all;
-    settings.strain_resistance = largest_resistance;
+    settings.strain_regularization = largest_regularization;
   }
 
-  // Measures the state, and sets up the bounds that stages start from. Throws Interrupted.
+  // Measures the state, and initializes the bounds of the stages. Throws Interrupted.
   Global_measure initialize()
   {
     m_exponent.template advance<ConcurrencyTag>(state);
     const Global_measure before = rescale();
     if(state.stencils.empty())
-      settings.limits.cosine = before.sharpest;
-    state.guards_angles = judges_angles && state.stencils.empty();
+      settings.limits.cosine = before.largest_cosine;
+    state.bounds_mean_angle = has_angle_criterion && state.stencils.empty();
     m_initial_angles = sum_of_angles();
-    m_initial_volume = volume_of_parts(state);
+    m_initial_volume = volume_of_mechanical_parts(state);
     interruption.check();
-    round_solver.initialize(make_drift_guard());
+    round_solver.initialize(make_shape_bound());
     interruption.check();
     return before;
   }
 
-  // the densities that are optimized now
+  // the current densities
   const Densities& densities() const { return m_exponent.densities(); }
   bool has_target_densities() const { return m_exponent.is_complete(); }
 
-  // To steeper densities, if they are due; then all that depends on them is measured anew, and `now` is how
-  // the state stands by them.
+  // Continues with a larger exponent if possible; then everything that depends on it is computed again, and
+  // `now` is the measure of the state with it.
   bool advance_densities(Global_measure& now)
   {
     if(!m_exponent.template advance<ConcurrencyTag>(state))
@@ -99,11 +98,11 @@ public:
     return true;
   }
 
-  // measures what bounds and barriers depend on, and returns how the state stands
+  // computes the values that bounds and barriers depend on, and measures the state
   Global_measure remeasure()
   {
     const Global_measure now = rescale();
-    round_solver.drift_guard().set_barrier(make_barrier());
+    round_solver.shape_bound().set_barrier(make_barrier());
     return now;
   }
 
@@ -111,22 +110,22 @@ public:
   {
     return internal::measure<ConcurrencyTag>(state, densities(), m_cap);
   }
-  // by the densities that the caller asked for
+  // with the requested densities
   double target_energy() const
   {
     return internal::measure<ConcurrencyTag>(state, target_densities,
                                              std::numeric_limits<double>::infinity())
       .energy;
   }
-  // what the elements would have at rest
+  // the energy of the elements at rest
   double rest_energy() const { return m_rest_energy; }
 
-  // what steps may not lower, or change much, in sum
+  // the sums that steps may not lower, or not change by much
   void update_sums()
   {
-    state.angle_surplus = sum_of_angles() - m_initial_angles;
-    if(state.guards_volume())
-      state.volume_change = volume_of_parts(state) - m_initial_volume;
+    state.angle_gain = sum_of_angles() - m_initial_angles;
+    if(state.bounds_volume())
+      state.volume_change = volume_of_mechanical_parts(state) - m_initial_volume;
   }
 
   std::vector<char> free_faces() const
@@ -134,22 +133,22 @@ public:
     return faces_around<ConcurrencyTag>(state.mesh, state.is_free, 0);
   }
 
-  // visits the wanted faces in flattened patches, until all are touched
-  bool flatten(const std::vector<char>& is_wanted, Patch_selection& chosen)
+  // visits the selected faces in flattened patches, until all are touched
+  bool flatten(const std::vector<char>& is_selected, Patch_selection& chosen)
   {
     const Indexed_mesh& mesh = state.mesh;
     std::vector<int> seeds;
     for(int f = 0; f < mesh.number_of_faces(); ++f)
-      if(is_wanted[f])
+      if(is_selected[f])
         seeds.push_back(f);
     for(std::size_t i = seeds.size(); i > 1; --i)
       std::swap(seeds[i - 1], seeds[m_random.get_int(0, int(i))]);
-    m_is_untouched = is_wanted;
-    chosen.forget_visits();
+    m_is_untouched = is_selected;
+    chosen.clear_visits();
 
     while(true)
     {
-      if(interruption.stops())
+      if(interruption.should_stop())
         return false;
       const auto start = std::chrono::steady_clock::now();
       const std::vector<std::vector<int>> patches =
@@ -162,66 +161,68 @@ public:
     }
   }
 
-  // divides the wanted faces into large patches
-  std::vector<std::vector<int>> divide(const std::vector<char>& is_wanted)
+  // divides the selected faces into large patches
+  std::vector<std::vector<int>> divide(const std::vector<char>& is_selected)
   {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::vector<int>> patches = partition.divide(is_wanted, m_random, &interruption);
+    std::vector<std::vector<int>> patches = partition.divide(is_selected, m_random, &interruption);
     result.times.selection += seconds_since(start);
     return patches;
   }
 
-  // visits the wanted faces in one round of small patches that are not flattened, of which each is a
-  // region of wanted faces if that is not too large
+  // visits the selected faces in one round of small patches that are not flattened, each a connected region
+  // of selected faces if that is not too large
   template <typename AnyDensities>
-  bool visit_regions(const std::vector<char>& is_wanted, Moves moves, const AnyDensities& densities)
+  bool
+  visit_regions(const std::vector<char>& is_selected, Moves moves, const AnyDensities& densities)
   {
-    if(interruption.stops())
+    if(interruption.should_stop())
       return false;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<int>> patches =
-      m_small_partition.divide_regions(is_wanted, m_random);
+      m_small_partition.divide_regions(is_selected, m_random);
     result.times.selection += seconds_since(start);
     return round_solver.solve(patches, moves, densities, settings);
   }
 
   Optimization_state& state;
-  const Densities& target_densities; // what the caller asked for
-  const double initial_energy;       // by these
+  const Densities& target_densities; // requested by the caller
+  const double initial_energy;       // of these
   const Loop_parameters& parameters;
   Visitor& visitor;
   Result& result;
   Interruption& interruption;
-  const bool judges_angles; // whether worst elements are judged by their angles
+  // whether the criterion for the worst elements is the smallest angle
+  const bool has_angle_criterion;
   Patch_selection selection, small_selection;
   Patch_partition partition;
   Round_solver<ConcurrencyTag, Visitor> round_solver;
   Solver_settings settings;
 
 private:
-  // measures what depends on the densities, and returns how the state stands by them
+  // computes the values that depend on the densities, and measures the state with them
   Global_measure rescale()
   {
-    // stuck elements own the sum: convergence is also judged on a sum to which each gives ten times
-    // the mean of the better half at most
+    // bad elements dominate the sum: convergence is also tested on a sum in which each is capped at ten
+    // times the mean of the better half
     const double typical = lower_half_mean<ConcurrencyTag>(state, densities());
     interruption.check();
     m_cap = 10 * typical;
     m_rest_energy = internal::rest_energy(state, densities());
     const Global_measure now = measure();
-    // what stencils ask for is paid with the shape of elements
+    // stencils may increase the density of elements
     settings.limits.density =
-      state.stencils.empty() ? now.worst : std::numeric_limits<double>::infinity();
+      state.stencils.empty() ? now.largest_density : std::numeric_limits<double>::infinity();
     settings.bad_density = 1.5 * typical;
     return now;
   }
 
-  // of the faces' smallest, in degrees
+  // sum of the faces' smallest angles, in degrees
   double sum_of_angles() const
   {
     const Indexed_mesh& mesh = state.mesh;
-    const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
-    const int n = state.guards_angles ? mesh.number_of_faces() : 0;
+    const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
+    const int n = state.bounds_mean_angle ? mesh.number_of_faces() : 0;
     std::vector<double> sums(number_of_blocks(n), 0);
     for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
       for(int f = begin; f < end; ++f)
@@ -239,27 +240,27 @@ private:
     const Indexed_mesh& mesh = state.mesh;
     double triangles = 0;
     for(int f = 0; f < mesh.number_of_faces(); ++f)
-      triangles += state.counts(f) ? mesh.degree(f) - 2 : 0;
+      triangles += state.is_optimized(f) ? mesh.degree(f) - 2 : 0;
     return Drift_barrier(0.1 * m_rest_energy / triangles);
   }
 
-  // By default the bound is a quarter of R's mean edge, or what keeps steps from taking the mesh further
-  // away than it is: a mesh that is coarser than R, or the image of a map, is further away by nature.
-  // Flattened patches alone see the barrier only where it is felt already, and stall in front of it: for
-  // them it has to be asked for.
-  Drift_guard make_drift_guard()
+  // By default the bound is a quarter of R's mean edge, or the distance of the input if that is larger: a
+  // mesh that is coarser than R, or the image of a map, is necessarily further away. Flattened patches
+  // alone consider the barrier only where it is active, and stall there: for them a bound has to be given.
+  Shape_bound make_shape_bound()
   {
-    Drift_guard guard;
+    Shape_bound shape_bound;
     const double bound = parameters.drift_bound;
     if(bound > (std::numeric_limits<double>::max)() ||
        (bound < 0 && !parameters.use_on_surface_steps))
-      return guard;
+      return shape_bound;
     const double edge = state.reference.mean_edge_length(), smallest = 1e-6 * edge;
-    guard.initialize<ConcurrencyTag>(state, bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
-                                     bound < 0, make_barrier(), &interruption);
-    result.drift_bound = guard.bound();
-    result.initial_drift = guard.initial_drift();
-    return guard;
+    shape_bound.initialize<ConcurrencyTag>(state,
+                                           bound < 0 ? 0.25 * edge : (std::max)(bound, smallest),
+                                           bound < 0, make_barrier(), &interruption);
+    result.drift_bound = shape_bound.bound();
+    result.initial_drift = shape_bound.initial_drift();
+    return shape_bound;
   }
 
   Exponent_continuation<Densities> m_exponent;
@@ -267,7 +268,7 @@ private:
   Patch_partition m_small_partition;
   Patch_rounds m_rounds;
   std::vector<char> m_is_untouched; // per face
-  double m_cap = 0;                 // of the density of an element, where convergence is judged
+  double m_cap = 0;                 // of the density of an element, in the test of convergence
   double m_rest_energy = 0;
   double m_initial_angles = 0; // their sum
   double m_initial_volume = 0; // six times that

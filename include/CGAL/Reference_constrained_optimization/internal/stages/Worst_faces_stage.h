@@ -20,13 +20,13 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// How many faces of a mesh may be worked on one by one: of a large one a five-hundredth and some.
-inline std::size_t number_of_exceptions(const Indexed_mesh& mesh)
+// The largest number of faces that are treated one by one.
+inline std::size_t largest_number_of_worst_faces(const Indexed_mesh& mesh)
 {
   return 20 + std::size_t(mesh.number_of_faces()) / 500;
 }
 
-// The faces with an element beyond `bad`, the worst first, as far as they are exceptions.
+// The faces with an element beyond `bad`, the worst first, up to that number.
 template <typename ConcurrencyTag, typename Density>
 std::vector<std::pair<double, int>>
 worst_faces(const Optimization_state& state, const Density& density, double bad)
@@ -35,16 +35,16 @@ worst_faces(const Optimization_state& state, const Density& density, double bad)
   faces.erase(std::remove_if(faces.begin(), faces.end(),
                              [&](const std::pair<double, int>& d) { return !(d.first > bad); }),
               faces.end());
-  const std::size_t n = (std::min)(number_of_exceptions(state.mesh), faces.size());
+  const std::size_t n = (std::min)(largest_number_of_worst_faces(state.mesh), faces.size());
   std::partial_sort(faces.begin(), faces.begin() + n, faces.end(),
                     std::greater<std::pair<double, int>>());
   faces.resize(n);
   return faces;
 }
 
-// Visits the worst faces by themselves, as long as that helps: by Newton steps on the surface in small
-// patches around them, and where these leave them as they were, by a search for better places of
-// their vertices. Without steps on the surface small patches are flattened instead.
+// Optimizes the worst faces separately, as long as they improve: by Newton steps on the surface in small
+// patches around them, and where these do not improve them, by a pattern search. Without steps on the
+// surface small patches are flattened instead.
 template <typename Visits>
 class Worst_faces_stage
 {
@@ -52,7 +52,7 @@ class Worst_faces_stage
   typedef typename Visits::Densities Densities;
 
 public:
-  // `searches_later`: a later stage searches, too, so that this one does so for worse elements only
+  // `searches_later`: a later stage searches, too, so that this one is restricted to worse elements
   Worst_faces_stage(Visits& visits, bool searches_later)
     : m_visits(visits),
       m_state(visits.state),
@@ -67,7 +67,7 @@ public:
     const bool use_on_surface_steps = m_visits.parameters.use_on_surface_steps;
     const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
-    m_found.assign(m_state.mesh.number_of_faces(), 0);
+    m_searched_density.assign(m_state.mesh.number_of_faces(), 0);
     for(int pass = 0; pass < maximum_passes; ++pass)
     {
       m_visits.interruption.check();
@@ -77,19 +77,19 @@ public:
       double after = 0;
       for(const std::pair<double, int>& d : worst)
         after += std::log(d.first / m_bad);
-      // a search has much to gain, or nothing
+      // a search improves much, or nothing
       const double enough =
         use_on_surface_steps ? 0.9 * before : before - 0.01 * double(worst.size());
       if(!(after < enough))
         return true;
       before = after;
-      double& largest = m_visits.settings.limits.density; // no element may end beyond it
+      double& largest = m_visits.settings.limits.density; // no element may end above it
       largest = (std::min)(largest, worst.front().first);
       m_visits.settings.search_density = std::numeric_limits<double>::infinity();
-      const bool goes_on = use_on_surface_steps
-                             ? move(worst)
-                             : m_visits.flatten(marked(worst), m_visits.small_selection);
-      if(!goes_on)
+      const bool is_completed = use_on_surface_steps
+                                  ? move(worst)
+                                  : m_visits.flatten(marked(worst), m_visits.small_selection);
+      if(!is_completed)
         return false;
     }
     return true;
@@ -115,39 +115,38 @@ private:
   {
     if(!m_visits.visit_regions(with_surroundings(faces), Moves::on_surface, m_densities))
       return false;
-    double& searched =
-      m_visits.settings.search_density; // elements beyond it are what a search is for
-    Faces stuck;
-    // where many are as bad as the last of them a search has no exceptions to deal with
-    const bool are_all = faces.size() < number_of_exceptions(m_state.mesh);
-    const double common = are_all ? 0 : faces.back().first;
+    double& search_threshold = m_visits.settings.search_density; // elements above it are searched
+    Faces unimproved;
+    // where many are as bad as the last of them, they are not searched
+    const bool are_all = faces.size() < largest_number_of_worst_faces(m_state.mesh);
+    const double common_density = are_all ? 0 : faces.back().first;
     for(const std::pair<double, int>& d : faces)
     {
       const double density = face_density(m_state, m_densities, d.second);
-      // what a search has left, and nothing has touched since, the next would leave, too
-      const bool was_left = std::abs(density - m_found[d.second]) < 0.01 * density;
-      if(!(density > m_bad_for_search) || !(density > 0.8 * d.first) || was_left ||
-         !(density > common))
+      // a face that has not changed since its last search is not searched again
+      const bool is_unchanged = std::abs(density - m_searched_density[d.second]) < 0.01 * density;
+      if(!(density > m_bad_for_search) || !(density > 0.8 * d.first) || is_unchanged ||
+         !(density > common_density))
         continue;
-      stuck.push_back(d);
-      searched = (std::min)(searched, 0.99 * density);
+      unimproved.push_back(d);
+      search_threshold = (std::min)(search_threshold, 0.99 * density);
     }
-    searched = (std::max)(searched, common);
-    if(stuck.empty())
+    search_threshold = (std::max)(search_threshold, common_density);
+    if(unimproved.empty())
       return true;
-    const bool goes_on =
-      m_visits.visit_regions(with_surroundings(stuck), Moves::by_search, m_densities);
-    for(const std::pair<double, int>& d : stuck)
-      m_found[d.second] = face_density(m_state, m_densities, d.second);
-    return goes_on;
+    const bool is_completed =
+      m_visits.visit_regions(with_surroundings(unimproved), Moves::pattern_search, m_densities);
+    for(const std::pair<double, int>& d : unimproved)
+      m_searched_density[d.second] = face_density(m_state, m_densities, d.second);
+    return is_completed;
   }
 
   Visits& m_visits;
   const Optimization_state& m_state;
   const Densities& m_densities;
   const double m_bad,
-    m_bad_for_search;          // faces with an element beyond these are visited, and searched
-  std::vector<double> m_found; // per face: its density after it was searched, else 0
+    m_bad_for_search; // faces with an element beyond these are visited, and searched
+  std::vector<double> m_searched_density; // per face: its density after it was searched, else 0
 };
 
 } // namespace internal

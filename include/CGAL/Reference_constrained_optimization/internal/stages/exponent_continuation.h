@@ -30,9 +30,9 @@ inline double exponent_factor(const Exponential_MIPS_density& density)
   return density.exponent_factor();
 }
 
-// Where slivers that nothing can open own the sum, an exponential energy falls at the cost of all the other
-// elements. So its exponent starts mild where there are many, and becomes steeper, up to what is asked
-// for, once they own no more than a part of the energy. Other densities are left as they are.
+// Where slivers that cannot be improved dominate the sum, an exponential energy falls at the cost of all
+// other elements. So its exponent starts small where there are many, and is increased, up to the requested
+// one, once their share of the energy is limited. Other densities are not changed.
 template <typename Densities>
 class Exponent_continuation
 {
@@ -45,72 +45,74 @@ public:
       densities.visit(term, [&](const auto& d) {
         m_target_factor = (std::max)(m_target_factor, exponent_factor(d));
       });
-    m_factor = (std::min)(mildest, m_target_factor);
-    m_densities = milder(m_factor);
+    m_factor = (std::min)(smallest_factor, m_target_factor);
+    m_densities = with_factor(m_factor);
   }
 
   const Densities& densities() const { return m_densities; }
-  // whether these are the ones that are asked for
+  // whether the requested exponent is reached
   bool is_complete() const { return m_factor == m_target_factor; }
 
-  // To the steepest exponent that slivers do not own; false if that is what there is. On mechanical parts
-  // a tenth of what is asked for is the steepest: slivers between feature lines can never open.
+  // Increases the exponent to the largest one that slivers do not dominate; false if it is not changed. On
+  // mechanical parts the limit is a tenth of the requested exponent: slivers between feature lines can
+  // never be improved.
   template <typename ConcurrencyTag>
   bool advance(const Optimization_state& state)
   {
     const double step = std::sqrt(10.);
     const double rounding = 1e-9;
-    const double steepest =
-      (state.bounds_turn.empty() ? 1 : 0.1) * (1 - rounding) * m_target_factor;
-    bool advances = false;
-    while(m_factor < steepest)
+    const double largest_factor =
+      (state.bounds_normal_deviation.empty() ? 1 : 0.1) * (1 - rounding) * m_target_factor;
+    bool has_advanced = false;
+    while(m_factor < largest_factor)
     {
       double next = m_factor * step;
       if(next > (1 - rounding) * m_target_factor)
         next = m_target_factor;
-      const Densities steeper = milder(next);
-      if(imbalance<ConcurrencyTag>(state, steeper) > largest_imbalance)
+      const Densities candidate = with_factor(next);
+      if(imbalance<ConcurrencyTag>(state, candidate) > largest_imbalance)
         break;
       m_factor = next;
-      m_densities = steeper;
-      advances = true;
+      m_densities = candidate;
+      has_advanced = true;
     }
-    return advances;
+    return has_advanced;
   }
 
 private:
-  static constexpr double mildest = 0.1, largest_imbalance = 20;
+  static constexpr double smallest_factor = 0.1, largest_imbalance = 20;
 
-  // with no exponent factor beyond the given one
-  Densities milder(double factor) const
+  // with exponent factors up to the given one
+  Densities with_factor(double factor) const
   {
-    return m_target.transformed([&](const auto& density) { return milder(density, factor); });
+    return m_target.transformed([&](const auto& density) { return with_factor(density, factor); });
   }
   template <typename Density>
-  static Density milder(const Density& density, double)
+  static Density with_factor(const Density& density, double)
   {
     return density;
   }
   // with the cap at the same shape as that of the exponent factor 1
-  static Exponential_MIPS_density milder(const Exponential_MIPS_density& density, double factor)
+  static Exponential_MIPS_density with_factor(const Exponential_MIPS_density& density,
+                                              double factor)
   {
     return factor < density.exponent_factor() ? Exponential_MIPS_density(factor, 20 * factor)
                                               : density;
   }
 
-  // the mean density of the elements, but for the worst of them, over that of the better half
+  // the mean density of the elements, without the worst hundredth, over that of the better half
   template <typename ConcurrencyTag>
-  static double imbalance(const Optimization_state& state, const Densities& steeper)
+  static double imbalance(const Optimization_state& state, const Densities& candidate)
   {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+    const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
     std::vector<double> densities(state.elements.size());
-    const double none = -1; // where nothing can move
+    const double none = -1; // for fixed elements
     for_each_block<ConcurrencyTag>(int(densities.size()), [&](int begin, int end, int) {
       for(int e = begin; e < end; ++e)
       {
         const std::array<int, 3>& v = state.elements[e].vertices;
         const bool is_fixed = !state.is_free[v[0]] && !state.is_free[v[1]] && !state.is_free[v[2]];
-        densities[e] = is_fixed ? none : element_energy(steeper, state.elements[e], vertex);
+        densities[e] = is_fixed ? none : element_energy(candidate, state.elements[e], vertex);
       }
     });
     densities.erase(std::remove(densities.begin(), densities.end(), none), densities.end());
@@ -118,14 +120,14 @@ private:
       return 1;
     const double trimmed = 0.01;
     const std::size_t half = (densities.size() + 1) / 2;
-    const std::size_t most =
+    const std::size_t trimmed_size =
       (std::max)(half, std::size_t((1 - trimmed) * double(densities.size())));
     const auto begin = densities.begin();
-    std::nth_element(begin, begin + (most - 1), densities.end());
-    std::nth_element(begin, begin + (half - 1), begin + most);
+    std::nth_element(begin, begin + (trimmed_size - 1), densities.end());
+    std::nth_element(begin, begin + (half - 1), begin + trimmed_size);
     const double half_sum = std::accumulate(begin, begin + half, 0.);
-    const double sum = std::accumulate(begin + half, begin + most, half_sum);
-    return sum / double(most) / (half_sum / double(half));
+    const double sum = std::accumulate(begin + half, begin + trimmed_size, half_sum);
+    return sum / double(trimmed_size) / (half_sum / double(half));
   }
 
   const Densities& m_target;

@@ -8,13 +8,13 @@
 #include <CGAL/Reference_constrained_optimization/internal/stages/Finishing_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/stages/Iteration_stage.h>
 #include <CGAL/Reference_constrained_optimization/internal/stages/Worst_faces_stage.h>
-#include <CGAL/Reference_constrained_optimization/internal/stages/open_clusters.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/separate_clusters.h>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The stages one after the other; the first that is cut short is the last.
+// Runs the stages one after the other, until one is interrupted.
 template <typename Visits>
 void run_stages(Visits& visits)
 {
@@ -22,9 +22,10 @@ void run_stages(Visits& visits)
   Global_measure before = visits.initialize();
   Iteration_stage<Visits> iterations(visits);
   visits.result.status = Status::iteration_limit;
-  if(visits.judges_angles && parameters.use_on_surface_steps && parameters.number_of_iterations > 0)
+  if(visits.has_angle_criterion && parameters.use_on_surface_steps &&
+     parameters.number_of_iterations > 0)
   {
-    if(!open_clusters(visits))
+    if(!separate_clusters(visits))
       return;
     if(!visits.advance_densities(before))
       before = visits.remeasure();
@@ -32,7 +33,7 @@ void run_stages(Visits& visits)
   if(!iterations.run(before))
     return;
   const bool finishes =
-    parameters.use_finishing_stage && parameters.use_on_surface_steps && visits.judges_angles;
+    parameters.use_finishing_stage && parameters.use_on_surface_steps && visits.has_angle_criterion;
   if(parameters.use_on_surface_steps || parameters.use_finishing_stage)
     if(!Worst_faces_stage<Visits>(visits, finishes).run())
       return;
@@ -40,8 +41,8 @@ void run_stages(Visits& visits)
     Finishing_stage<Visits>(visits).run();
 }
 
-// Optimizes a mesh on its reference, whose energy is given. The state holds what was accepted, also when it is cut short or a visitor
-// throws.
+// Optimizes a mesh on its reference; `initial_energy` is its energy. The state holds the accepted patches,
+// also after an interruption or if a visitor throws.
 template <typename ConcurrencyTag, typename Densities, typename Visitor>
 void optimize_state(Optimization_state& state,
                     const Densities& densities,
@@ -53,12 +54,12 @@ void optimize_state(Optimization_state& state,
 {
   Patch_visits<ConcurrencyTag, Densities, Visitor> visits(
     state, densities, initial_energy, parameters, visitor, result, interruption);
-  const auto note_end = [&]() {
+  const auto finalize_result = [&]() {
     if(interruption.has_stopped())
       result.status = interruption.status();
-    Drift_guard& guard = visits.round_solver.drift_guard();
-    if(guard.is_on())
-      result.drift = guard.template drift<ConcurrencyTag>(state);
+    Shape_bound& shape_bound = visits.round_solver.shape_bound();
+    if(shape_bound.is_enabled())
+      result.drift = shape_bound.template drift<ConcurrencyTag>(state);
   };
   try
   {
@@ -68,10 +69,10 @@ void optimize_state(Optimization_state& state,
   {}
   catch(...)
   {
-    note_end();
+    finalize_result();
     throw;
   }
-  note_end();
+  finalize_result();
 }
 
 } // namespace internal

@@ -8,8 +8,8 @@
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Element_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Stencil_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Polyline_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/reference/Slide_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
 
 #include <algorithm>
@@ -23,27 +23,28 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A vertex as the optimization sees it: its point of R and R's normal there.
-struct Placed_vertex
+// A vertex with its point of R and R's normal there.
+struct Located_vertex
 {
   Surface_point on_reference;
   Vector_3 position = Vector_3::Zero(); // differs from on_reference for constrained vertices off R
   Vector_3 normal = Vector_3::Zero();
-  Line_point on_line; // of vertices that slide
+  Polyline_point on_line; // of vertices that slide
 };
 
-// Puts a vertex at its point of a line; false if R is not found there on the same sheet.
-inline bool
-place_on_line(const Slide_lines& lines, const Reference_surface& reference, Placed_vertex& vertex)
+// Moves a vertex to its point of a line; false if there is no point of R on the same sheet.
+inline bool locate_on_line(const Polyline_set& lines,
+                           const Reference_surface& reference,
+                           Located_vertex& vertex)
 {
   const int face = lines[vertex.on_line.segment].face;
-  const Surface_point foot =
-    reference.descend(lines.position(vertex.on_line), face >= 0 ? face : vertex.on_reference.face);
-  const Vector_3 normal = reference.normal(foot);
+  const Surface_point projection = reference.local_closest(
+    lines.position(vertex.on_line), face >= 0 ? face : vertex.on_reference.face);
+  const Vector_3 normal = reference.normal(projection);
   if(!(normal.dot(vertex.normal) > 0))
     return false;
-  vertex.on_reference = foot;
-  vertex.position = foot.position;
+  vertex.on_reference = projection;
+  vertex.position = projection.position;
   vertex.normal = normal;
   return true;
 }
@@ -55,49 +56,49 @@ struct Constraints
   std::vector<char> is_line;        // per corner: its edge is constrained or at the border
 };
 
-// The mesh on its reference: what movers read, and what accepted patches change.
+// The mesh on its reference, which movers read and accepted patches change.
 struct Optimization_state
 {
   const Indexed_mesh& mesh;
   const Reference_surface& reference;
   const Element_set& elements;
-  std::vector<Placed_vertex> vertices;
+  std::vector<Located_vertex> vertices;
   std::vector<char> is_free;
-  Slide_lines lines = {};
+  Polyline_set lines = {};
   // per vertex that slides: its two neighbours on its line in the mesh; else -1
   std::vector<std::array<int, 2>> line_neighbours = {};
   Stencil_set stencils = {};
   std::vector<char> is_in_range = {}; // per face of the mesh; empty if all are to be optimized
-  // what is known of the shape: per triangle of R, whether it is of a mechanical part, and per face of the
-  // mesh, whether its turn against R is bounded, and per corner, whether its edge hardly turns on input and
-  // must not become sharp; empty if there are none
-  std::vector<char> is_mechanical = {}, bounds_turn = {}, is_smooth = {};
+  // per triangle of R, whether it belongs to a mechanical part; per face of the mesh, whether its normal
+  // deviation from R is bounded; per corner, whether its edge is smooth on input and must not become sharp;
+  // empty if there are none
+  std::vector<char> is_mechanical = {}, bounds_normal_deviation = {}, is_smooth = {};
 
-  // The mean of the faces' smallest angles may not fall below the input's if the energy is about angles: by
-  // how much their sum is above, in degrees.
-  bool guards_angles = false;
-  double angle_surplus = 0;
+  // The mean of the faces' smallest angles may not fall below that of the input if this is set; by how much
+  // their sum exceeds it, in degrees.
+  bool bounds_mean_angle = false;
+  double angle_gain = 0;
 
-  // By how much the volume of mechanical parts without a border may change, and has changed.
+  // The largest change of the volume of mechanical parts without a border, and the current one.
   double largest_volume_change = std::numeric_limits<double>::infinity();
   double volume_change = 0;
-  bool guards_volume() const { return std::isfinite(largest_volume_change); }
+  bool bounds_volume() const { return std::isfinite(largest_volume_change); }
 
-  bool counts(int f) const { return is_in_range.empty() || is_in_range[f]; }
+  bool is_optimized(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
-  // what is not optimized may be where it likes
-  bool has_face_that_counts(int v) const
+  // nothing is required of faces that are not optimized
+  bool has_optimized_face(int v) const
   {
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-      if(counts(mesh.corner_face[mesh.vertex_corners[k]]))
+      if(is_optimized(mesh.corner_face[mesh.vertex_corners[k]]))
         return true;
     return false;
   }
 };
 
-// Whether a face is turned against R, whether a quad is not convex as seen along R's normals, and
-// whether an edge is folded, for vertices given by a function `vertex(v)` that returns a
-// Placed_vertex. Degenerate faces count in none.
+// Whether a face is inverted with respect to R, whether a quad is not convex as seen along R's normals, and
+// whether an edge is folded, for vertices given by a function `vertex(v)` that returns a Located_vertex.
+// Degenerate faces count in none.
 template <typename VertexAccess>
 Vector_3 face_normal(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
 {
@@ -137,8 +138,8 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
     return false;
   for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
   {
-    const Placed_vertex &before = vertex(mesh.source(mesh.previous(c))),
-                        &here = vertex(mesh.source(c)), &after = vertex(mesh.target(c));
+    const Located_vertex &before = vertex(mesh.source(mesh.previous(c))),
+                         &here = vertex(mesh.source(c)), &after = vertex(mesh.target(c));
     const Vector_3 normal = (after.position - here.position).cross(before.position - here.position);
     if(normal.dot(before.normal + here.normal + after.normal) < 0)
       return true;
@@ -155,12 +156,12 @@ inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
 template <typename VertexAccess>
 Eigen::Matrix2d element_jacobian(const Element_set::Element& element, const VertexAccess& vertex)
 {
-  const Placed_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
-                      &c = vertex(element.vertices[2]);
+  const Located_vertex &a = vertex(element.vertices[0]), &b = vertex(element.vertices[1]),
+                       &c = vertex(element.vertices[2]);
   const Eigen::Matrix2d S =
     signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal);
   const auto& R = element.rest_inverse;
-  // S is upper triangular; entry by entry, as vectors would have to wait for what was just stored
+  // S is upper triangular; entry by entry, since vector loads would stall on the entries just stored
   Eigen::Matrix2d J;
   J(0, 0) = S(0, 0) * R(0, 0) + S(0, 1) * R(1, 0);
   J(1, 0) = S(1, 1) * R(1, 0);
@@ -199,7 +200,7 @@ double smallest_angle_cosine(const int* corners, const VertexAccess& vertex)
   return largest;
 }
 
-// The same of a face. Angles of quads are nothing that anybody asks about here: -1 there.
+// The same for a face; -1 for quads, whose angles are not bounded.
 template <typename VertexAccess>
 double smallest_angle_cosine(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
 {
@@ -209,12 +210,12 @@ double smallest_angle_cosine(const Indexed_mesh& mesh, const VertexAccess& verte
 }
 
 // six times the volume of the mechanical parts of a mesh
-inline double volume_of_parts(const Optimization_state& state)
+inline double volume_of_mechanical_parts(const Optimization_state& state)
 {
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   double sum = 0;
-  for(int f = 0; f < int(state.bounds_turn.size()); ++f)
-    if(state.bounds_turn[f])
+  for(int f = 0; f < int(state.bounds_normal_deviation.size()); ++f)
+    if(state.bounds_normal_deviation[f])
       sum += face_volume(state.mesh, vertex, f, face_normal(state.mesh, vertex, f),
                          state.vertices[state.mesh.corner_vertex[0]].position);
   return sum;
@@ -226,13 +227,13 @@ inline double energy_of_stencils(const Optimization_state& state)
     [&](int v) -> const Vector_3& { return state.vertices[v].position; });
 }
 
-// Figures of the whole mesh. Sums run in the order of the faces, block by block.
+// Measures of the whole mesh. Sums run in the order of the faces, block by block.
 struct Global_measure
 {
-  double energy = 0;        // sum of densities and stencils
-  double capped_energy = 0; // the same, each density capped
-  double worst = 0;         // largest density of an element that is not inverted
-  double sharpest = -1;     // largest cosine of an angle of a triangle with an element
+  double energy = 0;          // sum of densities and stencils
+  double capped_energy = 0;   // the same with each density capped
+  double largest_density = 0; // largest density of the elements that are not inverted
+  double largest_cosine = -1; // largest cosine of an angle of a triangle with an element
   std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
   std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
@@ -241,16 +242,16 @@ template <typename ConcurrencyTag, typename Density>
 Global_measure measure(const Optimization_state& state, const Density& density, double cap)
 {
   const Indexed_mesh& mesh = state.mesh;
-  const auto vertex = [&](int v) -> const Placed_vertex& { return state.vertices[v]; };
+  const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
   const int n = mesh.number_of_faces();
   std::vector<Vector_3> normals(n);
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
     for(int f = begin; f < end; ++f)
       normals[f] = face_normal(mesh, vertex, f);
   });
-  std::vector<Global_measure> parts(number_of_blocks(n));
+  std::vector<Global_measure> blocks(number_of_blocks(n));
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int block) {
-    Global_measure& m = parts[block];
+    Global_measure& m = blocks[block];
     for(int f = begin; f < end; ++f)
     {
       m.flips += is_flipped(mesh, vertex, f, normals[f]);
@@ -265,19 +266,19 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
         m.energy += d;
         m.capped_energy += (std::min)(d, cap);
         if(J.determinant() > 0)
-          m.worst = (std::max)(m.worst, d);
+          m.largest_density = (std::max)(m.largest_density, d);
       }
       if(state.elements.begin(f) < state.elements.end(f))
-        m.sharpest = (std::max)(m.sharpest, smallest_angle_cosine(mesh, vertex, f));
+        m.largest_cosine = (std::max)(m.largest_cosine, smallest_angle_cosine(mesh, vertex, f));
     }
   });
   Global_measure sum;
-  for(const Global_measure& m : parts)
+  for(const Global_measure& m : blocks)
   {
     sum.energy += m.energy;
     sum.capped_energy += m.capped_energy;
-    sum.worst = (std::max)(sum.worst, m.worst);
-    sum.sharpest = (std::max)(sum.sharpest, m.sharpest);
+    sum.largest_density = (std::max)(sum.largest_density, m.largest_density);
+    sum.largest_cosine = (std::max)(sum.largest_cosine, m.largest_cosine);
     sum.flips += m.flips;
     sum.fold_edges += m.fold_edges;
     sum.nonconvex_quads += m.nonconvex_quads;

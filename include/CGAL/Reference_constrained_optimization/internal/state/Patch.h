@@ -16,44 +16,44 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Some faces with local indices: where they are, what may move, and what energy is asked of them.
+// A set of faces with local indices: positions, free vertices, elements and stencils.
 struct Patch
 {
   std::vector<int> faces;    // of the whole mesh
   std::vector<int> vertices; // of the whole mesh
 
-  Indexed_mesh polygons;         // the faces, in local vertices
-  std::vector<int> outside_face; // per corner of polygons: face of the mesh across it if that
-                                 // is not in the patch, else -1
-  std::vector<char> is_free;     // per local vertex
+  Indexed_mesh polygons; // the faces, in local vertices
+  // per corner of polygons: the adjacent face of the mesh if that is not in the patch, else -1
+  std::vector<int> outside_face;
+  std::vector<char> is_free; // per local vertex
   int number_of_free_vertices = 0;
-  std::vector<Placed_vertex> placed; // per local vertex, as they are now
+  std::vector<Located_vertex> located; // per local vertex, as they are now
   // per local vertex that slides: its neighbours on its line, in local vertices; else -1. Empty if
   // none slides.
   std::vector<std::array<int, 2>> line_neighbours;
-  const Slide_lines* lines = nullptr;
+  const Polyline_set* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
-  // per face, and per corner, see Optimization_state; empty if no face's turn is bounded
-  std::vector<char> bounds_turn, is_smooth;
+  // per face, and per corner, see Optimization_state; empty if no normal deviation is bounded
+  std::vector<char> bounds_normal_deviation, is_smooth;
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
 
-  // The stencils with a free vertex. Of their vertices those that are not in the patch stay where they are:
-  // number ~v of `outside_points`.
+  // The stencils with a free vertex. Vertices outside the patch are fixed: v < 0 is number ~v of
+  // `outside_points`.
   struct Stencil
   {
     int number, size;                          // of all stencils
     std::array<int, largest_stencil> vertices; // local
-    bool is_shared;                            // has a vertex that others may move
+    bool is_shared;                            // has a vertex that other patches may move
   };
   std::vector<Stencil> stencils;
   std::vector<Vector_3> outside_points;
   const Stencil_set* all_stencils = nullptr;
-  const Vector_3& position(int v, const std::vector<Placed_vertex>& vertices) const
+  const Vector_3& position(int v, const std::vector<Located_vertex>& vertices) const
   {
     return v >= 0 ? vertices[v].position : outside_points[~v];
   }
-  double value(const Stencil& stencil, const std::vector<Placed_vertex>& vertices) const
+  double value(const Stencil& stencil, const std::vector<Located_vertex>& vertices) const
   {
     Stencil_points points;
     for(int i = 0; i < stencil.size; ++i)
@@ -61,7 +61,7 @@ struct Patch
     return all_stencils->value(stencil.number, points);
   }
 
-  // the faces split into triangles, for flattening and location
+  // the faces split into triangles, for flattening and point location
   const Indexed_mesh& triangles() const { return is_split ? split : polygons; }
 
   // the face of polygons() that a triangle is part of, and the first triangle of such a face
@@ -73,7 +73,7 @@ struct Patch
   std::vector<int> split_polygon, first_triangle;
 };
 
-// Builds patches; keeps its index maps from call to call.
+// Builds patches; reuses its index maps.
 class Patch_builder
 {
 public:
@@ -101,10 +101,11 @@ public:
     corners.reserve(begins.back());
     opposites.reserve(begins.back());
     patch.outside_face.reserve(begins.back());
-    const std::size_t enough = std::size_t(begins.back()) / 4; // vertices, most often: fewer copies
-    patch.placed.reserve(enough);
-    patch.vertices.reserve(enough);
-    corners_in_patch.reserve(enough);
+    // an estimate of the number of vertices
+    const std::size_t expected_size = std::size_t(begins.back()) / 4;
+    patch.located.reserve(expected_size);
+    patch.vertices.reserve(expected_size);
+    corners_in_patch.reserve(expected_size);
     patch.elements.reserve(begins.back() - 2 * faces.size()); // triangles
     patch.element_begin.reserve(faces.size() + 1);
     for(const int f : faces)
@@ -117,7 +118,7 @@ public:
           m_vertex_stamp[v] = m_stamp;
           m_local[v] = int(patch.vertices.size());
           patch.vertices.push_back(v);
-          patch.placed.push_back(state.vertices[v]);
+          patch.located.push_back(state.vertices[v]);
           corners_in_patch.push_back(0);
         }
         ++corners_in_patch[m_local[v]];
@@ -139,8 +140,8 @@ public:
         patch.elements.push_back(element);
       }
       patch.is_split = patch.is_split || mesh.degree(f) > 3;
-      if(!state.bounds_turn.empty())
-        patch.bounds_turn.push_back(state.bounds_turn[f]);
+      if(!state.bounds_normal_deviation.empty())
+        patch.bounds_normal_deviation.push_back(state.bounds_normal_deviation[f]);
     }
     patch.element_begin.push_back(int(patch.elements.size()));
     const int n = int(patch.vertices.size());
@@ -209,7 +210,7 @@ private:
   static void split(Patch& patch)
   {
     std::vector<Vector_3> points;
-    for(const Placed_vertex& p : patch.placed)
+    for(const Located_vertex& p : patch.located)
       points.push_back(p.position);
     const auto split_polygon = [&](int f) { return split_flat(patch.polygons, points, f); };
     patch.split = split_mesh(patch.polygons, split_polygon, [&](int f) {

@@ -18,7 +18,7 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The stencils of a patch as Newton's method sees them: vertices move in space by their frames.
+// The stencils of a patch for Newton's method: vertices move in space by their frames.
 class Stencil_terms
 {
 public:
@@ -46,7 +46,7 @@ public:
       for(int i = 0; i < stencil.size; ++i)
       {
         const int v = stencil.vertices[i];
-        term.points[i] = patch.position(v, patch.placed);
+        term.points[i] = patch.position(v, patch.located);
         if(v >= 0)
           term.frames[i] = frame(v);
       }

@@ -11,17 +11,17 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A vertex of a patch after sliding by a length along its line, forward or (if negative) back; false
-// if the line ends before.
+// A vertex of a patch after sliding by a length along its line, forward or (if negative) backward; false if
+// the line ends before.
 inline bool slide(const Patch& patch,
                   int v,
                   double length,
                   const Reference_surface& reference,
-                  Placed_vertex& result)
+                  Located_vertex& result)
 {
-  result = patch.placed[v];
+  result = patch.located[v];
   return patch.lines->advance(result.on_line, length) &&
-         place_on_line(*patch.lines, reference, result);
+         locate_on_line(*patch.lines, reference, result);
 }
 
 } // namespace internal

@@ -18,8 +18,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Blocks of successive indices in [0, n). They do not hang on the number of threads: sums that are
-// made block by block, and then over the blocks in their order, have the same bits for any.
+// Blocks of successive indices in [0, n). They do not depend on the number of threads: sums that are
+// computed block by block, and then over the blocks in their order, have the same bits for any number.
 inline int number_of_blocks(int n)
 {
   const int size = 4096;

@@ -27,9 +27,9 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // Calls work(workspace, i) for i in [0, n), each thread with a workspace of its own made by
-// `make_workspace`. The calls must not depend on one another. They begin in the order of i: with the
-// longest first no thread is left with a long one in the end. While the calling thread only waits for
-// others it calls `idle` again and again.
+// `make_workspace`. The calls must not depend on one another. They begin in the order of i; if the longest
+// comes first, the load is balanced best. While the calling thread waits for others it calls `idle`
+// repeatedly.
 template <typename ConcurrencyTag, typename Workspace>
 class For_each_patch
 {
@@ -62,7 +62,7 @@ public:
   void operator()(std::size_t n, const Work& work, const Idle& idle)
   {
     std::atomic<std::size_t> next(0);
-    const auto work_along = [&]() {
+    const auto run_items = [&]() {
       try
       {
         for(std::size_t i = next++; i < n; i = next++)
@@ -70,19 +70,19 @@ public:
       }
       catch(...)
       {
-        next = n; // nobody begins another one
+        next = n; // no further item is started
         throw;
       }
     };
-    std::atomic<std::size_t> number_of_helpers(0); // at work
+    std::atomic<std::size_t> number_of_workers(0); // at work
     std::mutex mutex;
     std::condition_variable has_ended;
-    const auto help = [&]() {
-      ++number_of_helpers;
+    const auto run_worker = [&]() {
+      ++number_of_workers;
       std::exception_ptr error;
       try
       {
-        work_along();
+        run_items();
       }
       catch(...)
       {
@@ -90,7 +90,7 @@ public:
       }
       {
         const std::lock_guard<std::mutex> lock(mutex);
-        --number_of_helpers;
+        --number_of_workers;
       }
       has_ended.notify_all();
       if(error)
@@ -101,14 +101,14 @@ public:
     const std::size_t threads =
       (std::min)(n, std::size_t((std::max)(1, tbb::this_task_arena::max_concurrency())));
     for(std::size_t i = 1; i < threads; ++i)
-      group.run(help);
+      group.run(run_worker);
     std::exception_ptr error;
     try
     {
-      work_along();
-      // the helpers that begin later find nothing to do
+      run_items();
+      // workers that begin later find no item left
       std::unique_lock<std::mutex> lock(mutex);
-      while(number_of_helpers > 0)
+      while(number_of_workers > 0)
         if(has_ended.wait_for(lock, std::chrono::milliseconds(20)) == std::cv_status::timeout)
         {
           lock.unlock();

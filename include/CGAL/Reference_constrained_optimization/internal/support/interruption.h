@@ -17,12 +17,12 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// thrown where work under way is given up
+// thrown where unfinished work is abandoned
 struct Interrupted
 {};
 
-// Whether to go on. Any thread may ask, often; the visitor and the clock are asked by the thread that
-// made the object alone, the others learn from it.
+// Whether the optimization has to stop. Any thread may query it, often; only the thread that made the
+// object calls the visitor and reads the clock.
 class Interruption
 {
 public:
@@ -30,22 +30,22 @@ public:
   Interruption(Visitor& visitor,
                const std::chrono::steady_clock::time_point& start,
                double maximum_running_time)
-    : m_goes_on([&visitor]() { return visitor.go_further(); }),
+    : m_go_further([&visitor]() { return visitor.go_further(); }),
       m_start(start),
       m_maximum_running_time(maximum_running_time),
       m_owner(std::this_thread::get_id())
   {}
 
-  bool stops()
+  bool should_stop()
   {
     if(!m_has_stopped && std::this_thread::get_id() == m_owner)
-      ask();
+      poll();
     return m_has_stopped;
   }
-  // a place where work may be given up
+  // a point at which work may be abandoned
   void check()
   {
-    if(stops())
+    if(should_stop())
       throw Interrupted();
   }
 
@@ -54,29 +54,29 @@ public:
   Status status() const { return m_status; }
 
 private:
-  void ask()
+  void poll()
   {
     if(seconds_since(m_start) > m_maximum_running_time)
       m_status = Status::time_limit;
     else
     {
-      bool goes_on = false;
+      bool may_continue = false;
       try
       {
-        goes_on = m_goes_on();
+        may_continue = m_go_further();
       }
       catch(...)
       {
-        m_has_stopped = true; // the other threads need not go on, either
+        m_has_stopped = true; // the other threads stop, too
         throw;
       }
-      if(goes_on)
+      if(may_continue)
         return;
     }
     m_has_stopped = true;
   }
 
-  std::function<bool()> m_goes_on;
+  std::function<bool()> m_go_further;
   std::chrono::steady_clock::time_point m_start;
   double m_maximum_running_time;
   std::thread::id m_owner;
@@ -84,15 +84,15 @@ private:
   std::atomic<bool> m_has_stopped{false};
 };
 
-// where there may be nobody to ask
+// for an interruption that may be null
 inline void check(Interruption* interruption)
 {
   if(interruption != nullptr)
     interruption->check();
 }
 
-// the same, in a loop over cheap things
-inline void check_now_and_then(Interruption* interruption, int i)
+// the same, in a loop of short iterations
+inline void check_periodically(Interruption* interruption, int i)
 {
   if(i % 256 == 0)
     check(interruption);

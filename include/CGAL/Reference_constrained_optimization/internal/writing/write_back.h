@@ -22,8 +22,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Writes the positions of the vertices that are not where they were `before`, in the frame; the others
-// keep their bits.
+// Writes the positions of the vertices that differ from `before`, in the frame; the others keep their
+// coordinates.
 template <typename PolygonMesh, typename VertexPointMap>
 void write_points(const PolygonMesh& g,
                   const VertexPointMap& vpm,
@@ -37,14 +37,14 @@ void write_points(const PolygonMesh& g,
   {
     if(state.vertices[i].position != before[i])
     {
-      const Vector_3 p = frame.to_caller(state.vertices[i].position);
+      const Vector_3 p = frame.to_user(state.vertices[i].position);
       put(vpm, v, Point(p.x(), p.y(), p.z()));
     }
     ++i;
   }
 }
 
-// A quad has no barycentric coordinates: who wants locations has to have triangles.
+// A quad has no barycentric coordinates: locations require triangles.
 template <typename NamedParameters>
 void check_location_map(const Reference_surface& reference, const NamedParameters&)
 {
@@ -56,8 +56,8 @@ void check_location_map(const Reference_surface& reference, const NamedParameter
                             " is a quad, but vertex_location_map needs triangles");
 }
 
-// hands out the locations on R. Barycentric coordinates are ordered as in CGAL's `locate`: source
-// of the face's half-edge first, while faces are read here from its target on.
+// writes the locations on R. Barycentric coordinates are ordered as in CGAL's `locate`: source of
+// the face's half-edge first, while faces are read here from its target on.
 template <typename PolygonMesh, typename ReferenceMesh, typename NamedParameters>
 void write_locations(const PolygonMesh& g,
                      const ReferenceMesh& reference,

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_TOWARDS_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_TOWARDS_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_IN_DIRECTION_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_IN_DIRECTION_H
 
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
@@ -14,9 +14,10 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// how far one gets along `direction`, per unit of length, by leaving the point `from` (on the boundary
-// of a triangle) into the triangle: `a` and `b` are the sides of the wedge that it covers there
-inline double progress_in_wedge(const Vector_3& a, const Vector_3& b, const Vector_3& direction)
+// length of the projection of the unit vector `direction` onto the wedge between `a` and `b`, which a
+// triangle covers at a point of its boundary
+inline double
+projected_length_in_wedge(const Vector_3& a, const Vector_3& b, const Vector_3& direction)
 {
   const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
   const double da = a.dot(direction), db = b.dot(direction);
@@ -43,11 +44,11 @@ inline int vertex_at(const Reference_surface& reference, const Surface_point& po
   return zeros == 2 ? mesh.corner_vertex[mesh.face_begin[point.face] + corner] : -1;
 }
 
-// The face of R that a point moves into when it moves as far as it can along `direction`; its own
-// where it is inside one, and where no face leads that way.
-inline int face_towards(const Reference_surface& reference,
-                        const Surface_point& point,
-                        const Vector_3& direction)
+// The face of R at a point in which `direction` has the longest projection; the point's own face where it
+// is inside one, and where no face contains a descent in that direction.
+inline int face_in_direction(const Reference_surface& reference,
+                             const Surface_point& point,
+                             const Vector_3& direction)
 {
   const Indexed_mesh& mesh = reference.mesh();
   int zero = 2;
@@ -56,11 +57,11 @@ inline int face_towards(const Reference_surface& reference,
   if(zero < 0)
     return point.face;
   int best = point.face;
-  double most = 0;
-  const auto consider = [&](int face, double progress) {
-    if(progress > most)
+  double largest = 0;
+  const auto consider = [&](int face, double length) {
+    if(length > largest)
     {
-      most = progress;
+      largest = length;
       best = face;
     }
   };
@@ -72,8 +73,9 @@ inline int face_towards(const Reference_surface& reference,
     {
       const int c = mesh.vertex_corners[k];
       consider(mesh.corner_face[c],
-               progress_in_wedge(reference.points()[mesh.target(c)] - p,
-                                 reference.points()[mesh.source(mesh.previous(c))] - p, direction));
+               projected_length_in_wedge(reference.points()[mesh.target(c)] - p,
+                                         reference.points()[mesh.source(mesh.previous(c))] - p,
+                                         direction));
     }
     return best;
   }
@@ -97,4 +99,4 @@ inline int face_towards(const Reference_surface& reference,
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_TOWARDS_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_FACE_IN_DIRECTION_H

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_GUARD_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_GUARD_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_TOPOLOGY_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_TOPOLOGY_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 
@@ -11,14 +11,14 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Whether a patch that is a disk (or empty) stays one when face f is added: the edges that f shares
-// with it must form one contiguous run that leaves out at least one edge, and a vertex of f that
-// the run does not reach must not belong to the patch yet.
+// Whether a patch that is a topological disk (or empty) remains one when face f is added: the edges that f
+// shares with it must form one contiguous run that leaves out at least one edge, and a vertex of f that is
+// not on the run must not belong to the patch yet.
 template <typename FaceInPatch, typename VertexInPatch>
-bool keeps_disk(const Indexed_mesh& mesh,
-                int f,
-                const FaceInPatch& face_in_patch,
-                const VertexInPatch& vertex_in_patch)
+bool preserves_disk(const Indexed_mesh& mesh,
+                    int f,
+                    const FaceInPatch& face_in_patch,
+                    const VertexInPatch& vertex_in_patch)
 {
   const int begin = mesh.face_begin[f], end = mesh.face_begin[f + 1];
   const auto shared = [&](int c) {
@@ -43,4 +43,4 @@ bool keeps_disk(const Indexed_mesh& mesh,
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_GUARD_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_SELECTION_DISK_TOPOLOGY_H

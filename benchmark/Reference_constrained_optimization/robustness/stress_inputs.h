@@ -1,9 +1,9 @@
-#ifndef RCO_BENCHMARK_NASTY_INPUTS_H
-#define RCO_BENCHMARK_NASTY_INPUTS_H
+#ifndef RCO_BENCHMARK_STRESS_INPUTS_H
+#define RCO_BENCHMARK_STRESS_INPUTS_H
 
 // Small inputs, each with one thing wrong, and what has to become of them.
 
-#include "../promises.h"
+#include "../guarantees.h"
 #include "Soup.h"
 #include "outcome.h"
 
@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-struct Nasty_input
+struct Stress_input
 {
   std::string name;
   Soup mesh;
@@ -25,24 +25,24 @@ struct Nasty_input
   Soup reference;
   std::function<bool(std::size_t)> is_constrained; // vertices; none if empty
 
-  Nasty_input(const std::string& name, const Soup& mesh, const Expectation& expected)
+  Stress_input(const std::string& name, const Soup& mesh, const Expectation& expected)
     : name(name),
       mesh(mesh),
       expected(expected),
       expected_with_noise(expected)
   {}
-  Nasty_input& against(const Soup& r)
+  Stress_input& against(const Soup& r)
   {
     has_reference = true;
     reference = r;
     return *this;
   }
-  Nasty_input& constrained(const std::function<bool(std::size_t)>& is)
+  Stress_input& constrained(const std::function<bool(std::size_t)>& is)
   {
     is_constrained = is;
     return *this;
   }
-  Nasty_input& with_noise(const Expectation& e)
+  Stress_input& with_noise(const Expectation& e)
   {
     expected_with_noise = e;
     return *this;
@@ -132,7 +132,7 @@ inline Soup shuffled(Soup s, unsigned seed)
   return s;
 }
 
-inline std::vector<Nasty_input> nasty_inputs()
+inline std::vector<Stress_input> stress_inputs()
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -143,9 +143,9 @@ inline std::vector<Nasty_input> nasty_inputs()
   const auto skewed = [](const Kernel::Point_3& p) { // of the unit square
     return Kernel::Point_3(p.x() * p.x(), p.y() * (0.6 + 0.4 * p.x() * p.y()), p.z());
   };
-  std::vector<Nasty_input> all;
+  std::vector<Stress_input> all;
   const auto add = [&](const std::string& name, const Soup& mesh,
-                       const Expectation& expected) -> Nasty_input& {
+                       const Expectation& expected) -> Stress_input& {
     all.emplace_back(name, mesh, expected);
     return all.back();
   };
@@ -333,4 +333,4 @@ inline std::vector<Nasty_input> nasty_inputs()
   return all;
 }
 
-#endif // RCO_BENCHMARK_NASTY_INPUTS_H
+#endif // RCO_BENCHMARK_STRESS_INPUTS_H

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_SEPARATE_CLUSTERS_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_SEPARATE_CLUSTERS_H
 
 #include <CGAL/Reference_constrained_optimization/internal/stages/Patch_visits.h>
 
@@ -15,9 +15,10 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Takes vertices apart that all but coincide, as long as clusters get fewer. False if cut short.
+// Separates vertices that nearly coincide, as long as the number of clusters decreases. False if
+// interrupted.
 template <typename Visits>
-bool open_clusters(Visits& visits)
+bool separate_clusters(Visits& visits)
 {
   typedef typename Visits::ConcurrencyTag ConcurrencyTag;
   const Optimization_state& state = visits.state;
@@ -37,7 +38,7 @@ bool open_clusters(Visits& visits)
       return true;
     before = number;
     const std::vector<char> faces = faces_around<ConcurrencyTag>(state.mesh, is_in, 1);
-    if(!visits.visit_regions(faces, Moves::opening, visits.densities()))
+    if(!visits.visit_regions(faces, Moves::cluster_separation, visits.densities()))
       return false;
   }
 }
@@ -46,4 +47,4 @@ bool open_clusters(Visits& visits)
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_OPEN_CLUSTERS_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_SEPARATE_CLUSTERS_H

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SLIDE_LINES_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SLIDE_LINES_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_POLYLINE_SET_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_POLYLINE_SET_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 
@@ -13,22 +13,22 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// a point of a line: a segment and the part of it that lies behind; segment -1: on no line
-struct Line_point
+// a point of a polyline: a segment and the fraction of its length; segment -1: on no polyline
+struct Polyline_point
 {
   int segment = -1;
-  double part = 0;
+  double fraction = 0;
 };
 
-// Polygonal lines on R along which vertices slide: its border, and lines of constrained edges.
-class Slide_lines
+// Polylines on R along which vertices slide: its border, and lines of constrained edges.
+class Polyline_set
 {
 public:
   struct Segment
   {
     Vector_3 from, to;
     int face;                     // of R, at it; -1 if not known
-    int next = -1, previous = -1; // the segments that it goes on with, if it does
+    int next = -1, previous = -1; // the neighbouring segments, if there are any
   };
 
   int add(const Vector_3& from, const Vector_3& to, int face)
@@ -45,45 +45,45 @@ public:
   const std::vector<Segment>& segments() const { return m_segments; }
   const Segment& operator[](int segment) const { return m_segments[segment]; }
 
-  Vector_3 position(const Line_point& p) const
+  Vector_3 position(const Polyline_point& p) const
   {
     const Segment& s = m_segments[p.segment];
-    return s.from + p.part * (s.to - s.from);
+    return s.from + p.fraction * (s.to - s.from);
   }
 
   // of unit length, forward; between two segments the mean of theirs
-  Vector_3 tangent(const Line_point& p) const
+  Vector_3 tangent(const Polyline_point& p) const
   {
     const Segment& s = m_segments[p.segment];
     Vector_3 t = direction(s);
     const double at_end = 1e-9;
-    if(p.part <= at_end && s.previous >= 0)
+    if(p.fraction <= at_end && s.previous >= 0)
       t += direction(m_segments[s.previous]);
-    else if(p.part >= 1 - at_end && s.next >= 0)
+    else if(p.fraction >= 1 - at_end && s.next >= 0)
       t += direction(m_segments[s.next]);
     return t.normalized();
   }
 
-  // goes on by a length, forward or (if it is negative) back; false if the line ends before
-  bool advance(Line_point& p, double length) const
+  // moves by a length, forward or (if it is negative) backward; false if the line ends before
+  bool advance(Polyline_point& p, double length) const
   {
-    // a closed line of tiny segments must not keep it going for ever
+    // bounds the number of steps on a closed line of tiny segments
     for(std::size_t step = 0; step <= m_segments.size(); ++step)
     {
       const Segment& s = m_segments[p.segment];
-      const double whole = (s.to - s.from).norm();
-      const double reached = p.part * whole + length;
-      if(reached >= 0 && reached <= whole)
+      const double segment_length = (s.to - s.from).norm();
+      const double reached = p.fraction * segment_length + length;
+      if(reached >= 0 && reached <= segment_length)
       {
-        p.part = whole > 0 ? reached / whole : 0;
+        p.fraction = segment_length > 0 ? reached / segment_length : 0;
         return true;
       }
       const int other = reached < 0 ? s.previous : s.next;
       if(other < 0)
         return false;
-      length = reached < 0 ? reached : reached - whole;
+      length = reached < 0 ? reached : reached - segment_length;
       p.segment = other;
-      p.part = reached < 0 ? 1 : 0;
+      p.fraction = reached < 0 ? 1 : 0;
     }
     return false;
   }
@@ -98,4 +98,4 @@ private:
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_SLIDE_LINES_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_POLYLINE_SET_H

@@ -2,8 +2,8 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_SEARCH_MOVER_H
-#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_SEARCH_MOVER_H
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_PATTERN_SEARCH_MOVER_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_PATTERN_SEARCH_MOVER_H
 
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
@@ -25,24 +25,25 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Moves the vertices around bad elements, one by one and those of one element together, each time to
-// the best of a few places on R around them. Newton steps trust a model that is smooth; where R has a
-// sharp vertex or a crease of the size of an element the energy on R is not, and they end in front of
-// it. A pattern search needs no model. It is slow, but only the few elements that are left behind by
-// the others are its business, and it ends where sweeps over them gain little of what they have gained.
-class Search_mover
+// Pattern search: moves the vertices around bad elements, one by one and those of one element together,
+// each time to the best of a few points of R around them. Newton steps assume a smooth energy; at a sharp
+// vertex or a crease of R of the size of an element it is not smooth, and they stall. A pattern search
+// needs no derivatives. It is slow, but applied to a few elements only, and it ends when sweeps decrease
+// the energy by little of the total decrease.
+class Pattern_search_mover
 {
 public:
-  explicit Search_mover(const Reference_surface& reference, Interruption* interruption = nullptr)
+  explicit Pattern_search_mover(const Reference_surface& reference,
+                                Interruption* interruption = nullptr)
     : m_reference(reference),
       m_interruption(interruption)
   {}
 
-  // elements with a density or with a cosine of an angle above these are what the search is for
-  void set_target(double bad, double sharp)
+  // elements with a density or with a cosine of an angle above these are searched
+  void set_thresholds(double density_threshold, double cosine_threshold)
   {
-    m_bad = bad;
-    m_sharp = sharp;
+    m_density_threshold = density_threshold;
+    m_cosine_threshold = cosine_threshold;
   }
 
   template <typename Density>
@@ -50,7 +51,7 @@ public:
   {
     const auto start = std::chrono::steady_clock::now();
     m_samples = &samples;
-    m_placed = patch.placed;
+    m_located = patch.located;
     const bool moves = search(patch, density);
     m_optimization_time = seconds_since(start);
     return moves;
@@ -62,25 +63,26 @@ public:
     return false;
   }
 
-  bool place(const Patch& patch, int v, double t, Placed_vertex& result) const
+  bool displaced_vertex(const Patch& patch, int v, double t, Located_vertex& result) const
   {
     if(t == 1)
     {
-      result = m_placed[v];
+      result = m_located[v];
       return true;
     }
-    const Placed_vertex& from = patch.placed[v];
-    return step_on_surface(m_reference, from, t * (m_placed[v].position - from.position), result);
+    const Located_vertex& from = patch.located[v];
+    return step_on_surface(m_reference, from, t * (m_located[v].position - from.position), result);
   }
 
-  double motion_length(int v) const { return m_length[v]; }
+  double displacement_length(int v) const { return m_displacement_lengths[v]; }
   double optimization_time() const { return m_optimization_time; }
 
 private:
-  static constexpr double first_reach = 0.3, last_reach = 0.01; // in mean edges at a vertex
+  // in mean edge lengths at a vertex
+  static constexpr double initial_step_size = 0.3, final_step_size = 0.01;
 
-  // what a vertex looks at: its elements and the drift around it, and whether its faces and their edges
-  // are turned or folded, or further from R than they may be
+  // the energy of the elements and the drift around a vertex, and the number of faces and edges there that
+  // are inverted or folded, or further from R than allowed
   struct Star_measure
   {
     double energy = 0;
@@ -95,20 +97,20 @@ private:
   template <typename Density>
   double energy(const Patch& patch, const Density& density) const
   {
-    const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
+    const auto vertex = [&](int w) -> const Located_vertex& { return m_located[w]; };
     double sum = 0;
     for(const int f : m_star)
       for(int e = patch.element_begin[f]; e < patch.element_begin[f + 1]; ++e)
         sum += element_energy(density, patch.elements[e], vertex);
     for(const int s : m_star_stencils)
-      sum += patch.value(patch.stencils[s], m_placed);
+      sum += patch.value(patch.stencils[s], m_located);
     return sum;
   }
 
   int defects(const Patch& patch) const
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
+    const auto vertex = [&](int w) -> const Located_vertex& { return m_located[w]; };
     int count = 0;
     for(const int f : m_star)
     {
@@ -126,10 +128,10 @@ private:
     Star_measure m;
     if(!m_samples->are_bounded())
       return m;
-    const auto vertex = [&](int w) -> const Placed_vertex& { return m_placed[w]; };
+    const auto vertex = [&](int w) -> const Located_vertex& { return m_located[w]; };
     const auto add = [&](double distance, double bound) {
       m.energy += m_samples->barrier.value(distance, bound);
-      m.defects += distance > Drift_barrier::last_part * bound;
+      m.defects += distance > Drift_barrier::limit_factor * bound;
     };
     for(const int t : m_triangles)
     {
@@ -142,11 +144,11 @@ private:
         locate_sample(patch, *m_samples, m_reference, vertex, s, sample);
         add(sample.distance, sample.bound);
       }
-      for(const int g : m_guests[patch.polygon_of(t)])
+      for(const int g : m_projected_samples[patch.polygon_of(t)])
       {
-        Patch_samples::Guest guest = m_samples->guests[g];
-        locate_guest(patch, m_reference, vertex, guest);
-        add(guest.distance, guest.bound);
+        Patch_samples::Projected_sample projected_sample = m_samples->projected_samples[g];
+        locate_projected_sample(patch, m_reference, vertex, projected_sample);
+        add(projected_sample.distance, projected_sample.bound);
       }
     }
     return m;
@@ -161,7 +163,7 @@ private:
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
           const int f = mesh.corner_face[mesh.vertex_corners[k]];
-          // at one vertex there is none twice
+          // a single vertex has no face twice
           if(vertices.size() == 1 || std::find(faces.begin(), faces.end(), f) == faces.end())
             faces.push_back(f);
         }
@@ -179,18 +181,18 @@ private:
         }
   }
 
-  void sort_guests(const Patch& patch)
+  void sort_projected_samples(const Patch& patch)
   {
-    m_guests.assign(patch.polygons.number_of_faces(), {});
-    for(std::size_t g = 0; g < m_samples->guests.size(); ++g)
-      m_guests[m_samples->guests[g].polygon].push_back(int(g));
+    m_projected_samples.assign(patch.polygons.number_of_faces(), {});
+    for(std::size_t g = 0; g < m_samples->projected_samples.size(); ++g)
+      m_projected_samples[m_samples->projected_samples[g].polygon].push_back(int(g));
   }
 
-  // vertices that move at once, and how far they look
+  // vertices that move together, and their step size
   struct Group
   {
     std::vector<int> vertices;
-    double reach = first_reach;
+    double step_size = initial_step_size;
   };
 
   bool may_move(const Patch& patch, int v) const { return patch.is_free[v] && !patch.slides(v); }
@@ -198,21 +200,21 @@ private:
   template <typename Density>
   bool is_bad(const Density& density, const Element_set::Element& element) const
   {
-    const auto vertex = [&](int v) -> const Placed_vertex& { return m_placed[v]; };
-    return element_energy(density, element, vertex) > m_bad ||
+    const auto vertex = [&](int v) -> const Located_vertex& { return m_located[v]; };
+    return element_energy(density, element, vertex) > m_density_threshold ||
            (!element.is_in_quad &&
-            smallest_angle_cosine(element.vertices.data(), vertex) > m_sharp);
+            smallest_angle_cosine(element.vertices.data(), vertex) > m_cosine_threshold);
   }
 
   // The vertices of bad elements, and those around them, one by one; then two and three of the same bad
-  // element: together they may go where each alone would be in the way of the others, as between a
-  // crease and an edge that would fold.
+  // element: together they can reach positions that they cannot reach one by one, as between a crease and
+  // an edge that would fold.
   template <typename Density>
   void collect_groups(const Patch& patch, const Density& density)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    std::vector<char> is_wanted(patch.vertices.size(), 0);
-    std::vector<Group> together;
+    std::vector<char> is_selected(patch.vertices.size(), 0);
+    std::vector<Group> joint_groups;
     for(const Element_set::Element& element : patch.elements)
     {
       if(!is_bad(density, element))
@@ -225,67 +227,70 @@ private:
         for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
         {
           const int c = mesh.vertex_corners[k];
-          is_wanted[v] = is_wanted[mesh.target(c)] = is_wanted[mesh.source(mesh.previous(c))] = 1;
+          is_selected[v] = is_selected[mesh.target(c)] =
+            is_selected[mesh.source(mesh.previous(c))] = 1;
         }
       }
       for(std::size_t i = 0; i < free.size(); ++i)
         for(std::size_t j = i + 1; j < free.size(); ++j)
-          together.push_back({{free[i], free[j]}});
+          joint_groups.push_back({{free[i], free[j]}});
       if(free.size() == 3)
-        together.push_back({free});
+        joint_groups.push_back({free});
     }
     m_groups.clear();
-    for(int v = 0; v < int(is_wanted.size()); ++v)
-      if(is_wanted[v] && may_move(patch, v))
+    for(int v = 0; v < int(is_selected.size()); ++v)
+      if(is_selected[v] && may_move(patch, v))
         m_groups.push_back({{v}});
-    m_groups.insert(m_groups.end(), together.begin(), together.end());
+    m_groups.insert(m_groups.end(), joint_groups.begin(), joint_groups.end());
   }
 
   template <typename Density>
   bool search(const Patch& patch, const Density& density)
   {
     const Indexed_mesh& mesh = patch.polygons;
-    const int maximum_sweeps = 40, patience = 3; // reach shrinks where a sweep gains nothing
-    const double little = 0.001;                 // part of the gain of all sweeps
-    double gain_of_all = 0, recent[patience] = {};
-    sort_guests(patch);
-    m_length.resize(patch.vertices.size());
+    // the step size shrinks where a sweep gains nothing
+    const int maximum_sweeps = 40, stall_limit = 3;
+    const double stall_tolerance = 0.001; // relative to the gain of all sweeps
+    double total_gain = 0, recent[stall_limit] = {};
+    sort_projected_samples(patch);
+    m_displacement_lengths.resize(patch.vertices.size());
     collect_groups(patch, density);
-    bool has_moved = false, goes_on = true;
-    for(int sweep = 0; goes_on && sweep < maximum_sweeps; ++sweep)
+    bool has_moved = false, is_active = true;
+    for(int sweep = 0; is_active && sweep < maximum_sweeps; ++sweep)
     {
-      goes_on = false;
+      is_active = false;
       double gain = 0;
       for(std::size_t i = 0; i < m_groups.size(); ++i)
       {
         Group& group = m_groups[i];
-        if(group.reach < last_reach)
+        if(group.step_size < final_step_size)
           continue;
-        goes_on = true;
-        check_now_and_then(m_interruption, int(i));
+        is_active = true;
+        check_periodically(m_interruption, int(i));
         const int v = group.vertices.front();
         const double edge = mean_edge_length_at(
-          mesh, [&](int w) -> const Vector_3& { return m_placed[w].position; }, v);
-        if(improve(patch, density, group.vertices, group.reach * edge, gain))
+          mesh, [&](int w) -> const Vector_3& { return m_located[w].position; }, v);
+        if(improve(patch, density, group.vertices, group.step_size * edge, gain))
         {
           has_moved = true;
-          group.reach = (std::min)(first_reach, 1.5 * group.reach);
-          // what is around has changed: it is looked at again
+          group.step_size = (std::min)(initial_step_size, 1.5 * group.step_size);
+          // neighbours are searched again
           for(Group& other : m_groups)
-            if(other.reach < last_reach && are_neighbours(mesh, group.vertices, other.vertices))
-              other.reach = 4 * last_reach;
+            if(other.step_size < final_step_size &&
+               are_neighbours(mesh, group.vertices, other.vertices))
+              other.step_size = 4 * final_step_size;
         }
         else
-          group.reach *= 0.5;
+          group.step_size *= 0.5;
       }
-      gain_of_all += gain;
-      recent[sweep % patience] = gain;
-      const double recent_gain = std::accumulate(recent, recent + patience, 0.);
-      if(gain_of_all > 0 && sweep >= patience && recent_gain < little * gain_of_all)
+      total_gain += gain;
+      recent[sweep % stall_limit] = gain;
+      const double recent_gain = std::accumulate(recent, recent + stall_limit, 0.);
+      if(total_gain > 0 && sweep >= stall_limit && recent_gain < stall_tolerance * total_gain)
         break;
     }
-    for(std::size_t v = 0; v < m_placed.size(); ++v)
-      m_length[v] = (m_placed[v].position - patch.placed[v].position).norm();
+    for(std::size_t v = 0; v < m_located.size(); ++v)
+      m_displacement_lengths[v] = (m_located[v].position - patch.located[v].position).norm();
     return has_moved;
   }
 
@@ -313,49 +318,49 @@ private:
     return false;
   }
 
-  // takes a vertex to the best of eight places at the given distance, or several vertices, all the same
-  // way, to the best of four, if that is better than their own; adds what that gains
+  // moves a vertex to the best of eight points at the given distance, or several vertices by the same
+  // displacement to the best of four, if that is an improvement; adds the decrease of the energy
   template <typename Density>
   bool improve(const Patch& patch,
                const Density& density,
                const std::vector<int>& group,
-               double reach,
+               double step_size,
                double& gain)
   {
     collect_star(patch, group);
-    m_here.clear();
+    m_current.clear();
     for(const int v : group)
-      m_here.push_back(m_placed[v]);
+      m_current.push_back(m_located[v]);
     Vector_3 normal = Vector_3::Zero();
-    for(const Placed_vertex& here : m_here)
-      normal += here.normal;
+    for(const Located_vertex& current : m_current)
+      normal += current.normal;
     const Tangent_frame frame = tangent_frame(normal);
     Star_measure best = drift(patch);
     best.energy += energy(patch, density);
     best.defects += defects(patch);
     const double energy_before = best.energy;
-    m_best_places = m_here;
+    m_best = m_current;
     bool found = false;
     const double diagonal = std::sqrt(0.5);
     const double directions[8][2] = {
       {1, 0},  {diagonal, diagonal},   {0, 1},  {-diagonal, diagonal},
       {-1, 0}, {-diagonal, -diagonal}, {0, -1}, {diagonal, -diagonal}};
-    const auto put = [&](const std::vector<Placed_vertex>& places) {
+    const auto set_group = [&](const std::vector<Located_vertex>& places) {
       for(std::size_t i = 0; i < group.size(); ++i)
-        m_placed[group[i]] = places[i];
+        m_located[group[i]] = places[i];
     };
-    const auto go = [&](const Vector_3& way) {
+    const auto move_group = [&](const Vector_3& displacement) {
       for(std::size_t i = 0; i < group.size(); ++i)
-        if(!step_on_surface(m_reference, m_here[i], way, m_placed[group[i]]))
+        if(!step_on_surface(m_reference, m_current[i], displacement, m_located[group[i]]))
           return false;
       return true;
     };
     const int stride = group.size() > 1 ? 2 : 1;
     for(int k = 0; k < 8; k += stride)
     {
-      if(go(reach * (frame * Vector_2(directions[k][0], directions[k][1]))))
+      if(move_group(step_size * (frame * Vector_2(directions[k][0], directions[k][1]))))
       {
-        // drift and defects are costly to measure
+        // drift and defects are expensive to measure
         Star_measure m{energy(patch, density), 0};
         if(m < best)
         {
@@ -368,28 +373,28 @@ private:
           best = m;
           found = true;
           for(std::size_t i = 0; i < group.size(); ++i)
-            m_best_places[i] = m_placed[group[i]];
+            m_best[i] = m_located[group[i]];
         }
       }
-      put(m_here);
+      set_group(m_current);
     }
-    put(m_best_places);
-    gain += (std::max)(0., energy_before - best.energy); // a defect that is mended may cost energy
+    set_group(m_best);
+    gain += (std::max)(0., energy_before - best.energy); // the repair of a defect may cost energy
     return found;
   }
 
   const Reference_surface& m_reference;
   Interruption* m_interruption;
-  double m_bad = std::numeric_limits<double>::infinity();
-  double m_sharp = 1;
+  double m_density_threshold = std::numeric_limits<double>::infinity();
+  double m_cosine_threshold = 1;
   const Patch_samples* m_samples = nullptr;
-  std::vector<Placed_vertex> m_placed;
-  std::vector<std::vector<int>> m_guests; // per polygon
+  std::vector<Located_vertex> m_located;
+  std::vector<std::vector<int>> m_projected_samples; // per polygon
   // around the vertices that move: faces, triangles, and stencils of the patch
   std::vector<int> m_star, m_triangles, m_star_stencils;
-  std::vector<Placed_vertex> m_here, m_best_places; // of these
+  std::vector<Located_vertex> m_current, m_best; // of these
   std::vector<Group> m_groups;
-  std::vector<double> m_length; // per vertex: of its way
+  std::vector<double> m_displacement_lengths; // per vertex
   double m_optimization_time = 0;
 };
 
@@ -397,4 +402,4 @@ private:
 } // namespace Reference_constrained_optimization
 } // namespace CGAL
 
-#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_SEARCH_MOVER_H
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ON_SURFACE_PATTERN_SEARCH_MOVER_H

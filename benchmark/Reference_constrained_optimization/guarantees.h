@@ -1,5 +1,5 @@
-#ifndef RCO_BENCHMARK_PROMISES_H
-#define RCO_BENCHMARK_PROMISES_H
+#ifndef RCO_BENCHMARK_GUARANTEES_H
+#define RCO_BENCHMARK_GUARANTEES_H
 
 // What --check verifies in all drivers.
 
@@ -23,8 +23,8 @@ struct Defects_in_and_out
   CGAL::Reference_constrained_optimization::Orientation_defects in, out;
 };
 
-// what does not hold of the promises, in words
-class Broken_promises
+// the guarantees that are violated, in words
+class Violated_guarantees
 {
 public:
   void add_if(bool is_broken, const std::string& words)
@@ -33,7 +33,7 @@ public:
       m_text += (m_text.empty() ? "" : "; ") + words;
   }
 
-  // what every run promises; `is_free` tells the vertices that may move
+  // the guarantees of every run; `is_free` tells the vertices that may move
   template <typename Is_free>
   void check_run(const Mesh& input,
                  const Mesh& output,
@@ -78,4 +78,4 @@ private:
   std::string m_text;
 };
 
-#endif // RCO_BENCHMARK_PROMISES_H
+#endif // RCO_BENCHMARK_GUARANTEES_H
