@@ -668,9 +668,9 @@ void test_defect_repair()
                  repair.run();
                  RCO_CHECK(!repair.has_restored_vertices());
                  const auto density = RCO::Minimum_angle_energy().density();
-                 RCO_CHECK(repair.grow(density));
+                 RCO_CHECK(repair.enlarge(density));
                  RCO_CHECK(is_at(id(5, 4), start) && is_at(id(9, 9), moved));
-                 while(repair.grow(density))
+                 while(repair.enlarge(density))
                  {}
                  RCO_CHECK(is_at(id(9, 9), start));
                });
