@@ -46,7 +46,10 @@ struct Mover_to
   std::vector<Vector_3> ways;
   const internal::Reference_surface& surface;
 
-  bool place(const internal::Patch& patch, int v, double t, internal::Located_vertex& result) const
+  bool displaced_vertex(const internal::Patch& patch,
+                        int v,
+                        double t,
+                        internal::Located_vertex& result) const
   {
     return internal::step_on_surface(surface, patch.located[v], t * ways[v], result);
   }
@@ -108,7 +111,7 @@ void test_random_steps(bool has_short_steps)
     Scene scene(scrambled(sphere, 0.35, 10 + trial, onto_sphere), sphere);
     const auto before = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
     internal::Step_limits limits;
-    limits.density = before.worst;
+    limits.density = before.largest_density;
     limits.cosine = before.largest_cosine;
     // back to the regular mesh, plus a random displacement
     Mover_to mover = scene.mover(0.02 * (trial % 5), random);
@@ -134,7 +137,7 @@ void test_random_steps(bool has_short_steps)
     const auto after = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
     RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
     RCO_CHECK(after.defects() < before.defects() || after.energy < before.energy);
-    RCO_CHECK_LESS_EQUAL(after.worst, before.worst);
+    RCO_CHECK_LESS_EQUAL(after.largest_density, before.largest_density);
     RCO_CHECK_LESS_EQUAL(after.largest_cosine, before.largest_cosine);
     RCO_CHECK_NEAR(decision.after.energy, after.energy, 1e-9 * after.energy);
   }

@@ -375,7 +375,7 @@ Mesh two_fans(bool closed)
     for(const Mesh::Halfedge_index h : CGAL::halfedges_around_target(middles[1], mesh))
       to_second.push_back(h);
     for(const Mesh::Halfedge_index h : to_second)
-      mesh.set_thresholds(h, middles[0]);
+      mesh.set_target(h, middles[0]);
     mesh.set_halfedge(middles[1], Mesh::null_halfedge());
   }
   return mesh;
@@ -472,7 +472,7 @@ void test_bad_data()
     for(const Mesh::Halfedge_index h : four.halfedges())
       for(const int i : {0, 1})
         if(four.target(h) == v[6 + i])
-          four.set_thresholds(h, v[i]);
+          four.set_target(h, v[i]);
     for(const int i : {6, 7})
       four.set_halfedge(v[i], Mesh::null_halfedge());
     refuses(four, four, energy, np, "mesh: the edge between vertices 0 and 1");

@@ -38,8 +38,7 @@ struct Volume : Invariant
       return;
     for(const int f : trial.changed)
       if(trial.patch.bounds_normal_deviation[f])
-        m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f],
-                                         trial.patch.located[0].position);
+        m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f], m_apex);
   }
 
   void accept()

@@ -7,11 +7,11 @@
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_tree.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/split_edge.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/iterator.h>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ public:
   // if necessary
   int add_border_landmark(int after, double length)
   {
-    Halfedge h = border_halfedge_from(m_landmarks[after]);
+    Halfedge h = border_halfedge_from(m_mesh, m_landmarks[after]);
     for(; length > this->length(h); h = m_mesh.next(h))
       length -= this->length(h);
     const double t = length / this->length(h);
@@ -251,32 +251,17 @@ private:
   // the border's half-edges from one landmark on it to another, or once around to itself
   std::vector<Halfedge> border_between(int from, int to) const
   {
-    std::vector<Halfedge> path(1, border_halfedge_from(m_landmarks[from]));
+    std::vector<Halfedge> path(1, border_halfedge_from(m_mesh, m_landmarks[from]));
     while(m_mesh.target(path.back()) != m_landmarks[to])
       path.push_back(m_mesh.next(path.back()));
     return path;
   }
 
-  Halfedge border_halfedge_from(Vertex v) const
-  {
-    for(const Halfedge h : CGAL::halfedges_around_source(v, m_mesh))
-      if(m_mesh.is_border(h))
-        return h;
-    return Mesh::null_halfedge();
-  }
-
   // splits the edge at the fraction t of its length, and the faces at it
   Vertex split(Halfedge h, double t)
   {
-    const auto p = m_mesh.point(m_mesh.source(h)), q = m_mesh.point(m_mesh.target(h));
-    const Halfedge n = CGAL::Euler::split_edge(h, m_mesh); // from the source to the new vertex
-    const Vertex v = m_mesh.target(n);
-    m_mesh.point(v) = p + t * (q - p);
+    const Vertex v = split_edge_and_faces(m_mesh, h, t);
     m_is_taken[v] = false;
-    const Halfedge o = m_mesh.opposite(m_mesh.next(n)); // the incoming one on the other side
-    for(const Halfedge incoming : {n, o})
-      if(!m_mesh.is_border(incoming))
-        CGAL::Euler::split_face(incoming, m_mesh.next(m_mesh.next(incoming)), m_mesh);
     return v;
   }
 
@@ -285,7 +270,7 @@ private:
   {
     const Vertex v = m_landmarks[landmark];
     Halfedge start = m_mesh.opposite(m_mesh.halfedge(v));
-    const Halfedge border = border_halfedge_from(v);
+    const Halfedge border = border_halfedge_from(m_mesh, v);
     if(border != Mesh::null_halfedge())
       start = m_mesh.opposite(m_mesh.prev(border));
     std::vector<Halfedge> result;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -40,6 +41,39 @@ double projected_derivatives(const Density& density,
   const Eigen::Matrix4d& vectors = solver.eigenvectors();
   hessian = vectors * solver.eigenvalues().cwiseMax(0.).asDiagonal() * vectors.transpose();
   return density.value(J);
+}
+
+// The same, and the value, of an element by its index, or of a density.
+template <typename Elements>
+auto value_of(const Elements& elements, std::size_t e, const Eigen::Matrix2d& J, int)
+  -> decltype(elements.value(e, J))
+{
+  return elements.value(e, J);
+}
+template <typename Density>
+double value_of(const Density& density, std::size_t, const Eigen::Matrix2d& J, long)
+{
+  return density.value(J);
+}
+template <typename Elements>
+auto derivatives_of(const Elements& elements,
+                    std::size_t e,
+                    const Eigen::Matrix2d& J,
+                    Eigen::Vector4d& gradient,
+                    Eigen::Matrix4d& hessian,
+                    int) -> decltype(elements.value(e, J))
+{
+  return elements.projected_derivatives(e, J, gradient, hessian);
+}
+template <typename Density>
+double derivatives_of(const Density& density,
+                      std::size_t,
+                      const Eigen::Matrix2d& J,
+                      Eigen::Vector4d& gradient,
+                      Eigen::Matrix4d& hessian,
+                      long)
+{
+  return projected_derivatives(density, J, gradient, hessian, 0);
 }
 
 } // namespace internal

@@ -146,39 +146,6 @@ public:
   }
 
 private:
-  // of an element by its index, or of a density
-  template <typename Elements>
-  static auto value_of(const Elements& elements, std::size_t e, const Eigen::Matrix2d& J, int)
-    -> decltype(elements.value(e, J))
-  {
-    return elements.value(e, J);
-  }
-  template <typename Density>
-  static double value_of(const Density& density, std::size_t, const Eigen::Matrix2d& J, long)
-  {
-    return density.value(J);
-  }
-  template <typename Elements>
-  static auto derivatives_of(const Elements& elements,
-                             std::size_t e,
-                             const Eigen::Matrix2d& J,
-                             Eigen::Vector4d& gradient,
-                             Eigen::Matrix4d& hessian,
-                             int) -> decltype(elements.value(e, J))
-  {
-    return elements.projected_derivatives(e, J, gradient, hessian);
-  }
-  template <typename Density>
-  static double derivatives_of(const Density& density,
-                               std::size_t,
-                               const Eigen::Matrix2d& J,
-                               Eigen::Vector4d& gradient,
-                               Eigen::Matrix4d& hessian,
-                               long)
-  {
-    return projected_derivatives(density, J, gradient, hessian, 0);
-  }
-
   template <typename Problem, typename Elements>
   static double
   value(const Problem& problem, const Elements& elements, const std::vector<Vector_2>& u)

@@ -40,6 +40,11 @@ public:
                                Eigen::Vector4d& gradient,
                                Eigen::Matrix4d& hessian) const
   {
+    if constexpr(sizeof...(Density) != 1) // so that compilers see them initialized
+    {
+      gradient.setZero();
+      hessian.setZero();
+    }
     double result = 0;
     visit(element.term, [&](const auto& density) {
       result = element.weight * internal::projected_derivatives(density, J, gradient, hessian, 0);

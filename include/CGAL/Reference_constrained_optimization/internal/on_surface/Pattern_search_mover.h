@@ -300,21 +300,8 @@ private:
   {
     for(const int v : first)
       for(const int w : second)
-        if(v == w || are_neighbours(mesh, v, w))
+        if(v == w || mesh.face_at(v, w) >= 0)
           return true;
-    return false;
-  }
-
-  static bool are_neighbours(const Indexed_mesh& mesh, int v, int w)
-  {
-    if(mesh.valence(w) < mesh.valence(v))
-      std::swap(v, w);
-    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
-    {
-      const int c = mesh.vertex_corners[k];
-      if(mesh.target(c) == w || mesh.source(mesh.previous(c)) == w)
-        return true;
-    }
     return false;
   }
 
