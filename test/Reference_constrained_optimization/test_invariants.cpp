@@ -51,6 +51,8 @@ struct Mover_to
                         double t,
                         internal::Located_vertex& result) const
   {
+    if(ways[v].isZero(0))
+      return true;
     return internal::step_on_surface(surface, patch.located[v], t * ways[v], result);
   }
   double displacement_length(int v) const { return ways[v].norm(); }
@@ -170,7 +172,11 @@ void test_inversion()
   internal::Backtracking_with<std::tuple<>, std::tuple<>> none;
   RCO_CHECK(
     none.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true).accepted);
-  RCO_CHECK_EQUAL(none.steps()[moved], 1.);
+  RCO_CHECK_LESS(backtracking.steps()[moved], none.steps()[moved]);
+  for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
+    scene.state.vertices[scene.patch.vertices[v]] = none.candidate()[v];
+  RCO_CHECK_LESS(std::size_t(0),
+                 internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300).flips);
 }
 
 int main()

@@ -172,7 +172,9 @@ inline std::vector<Stress_input> stress_inputs()
   add("strip of two rows of vertices", plane(9, 1), nothing);
   add("band of two rows of vertices", cylinder(9, 1), nothing);
   add("strip of three rows of vertices", moved(plane(9, 2), skewed), improves);
-  add("band of three rows of vertices", scaled(cylinder(9, 2), 1, 2, 0.5), improves);
+  // the few free vertices have nothing to gain with some noises, of which three tenths of an edge are many
+  add("band of three rows of vertices", scaled(cylinder(9, 2), 1, 2, 0.5), improves)
+    .with_noise(optimized);
   add("all vertices constrained", ball, nothing).constrained([](std::size_t) { return true; });
   add("every other vertex constrained", ball, optimized).constrained([](std::size_t v) {
     return v % 2 == 0;
