@@ -108,6 +108,48 @@ void test_detection()
                   std::size_t(12 * n));
 }
 
+// a roof whose ridge turns by 100 degrees at one end and not at all at the other
+Shape fading_roof(int columns, int rows)
+{
+  Shape roof = plane_grid(columns, 2 * rows);
+  for(Vector_3& p : roof.points)
+    p = Vector_3(6 * p.x(), 2 * p.y() - 1,
+                 -std::abs(2 * p.y() - 1) * std::tan(50 * (1 - p.x()) * CGAL_PI / 180));
+  return roof;
+}
+
+// A line that is sharp where it begins is followed to where it is hardly bent, and nothing else is taken.
+void test_fading_lines()
+{
+  const Scope scope("fading lines");
+  const int columns = 60;
+  Mesh mesh = make_mesh<Mesh>(fading_roof(columns, 6));
+  const auto map = detected(mesh).second;
+  for(const Mesh::Edge_index e : mesh.edges())
+  {
+    const auto p = mesh.point(mesh.vertex(e, 0)), q = mesh.point(mesh.vertex(e, 1));
+    const bool is_ridge = std::abs(p.y()) + std::abs(q.y()) < 1e-12;
+    const double angle = 100 * (1 - 0.5 * (p.x() + q.x()) / 6); // up to a degree
+    if(map[e])
+      RCO_CHECK(is_ridge && angle > 4);
+    else
+      RCO_CHECK(!is_ridge || angle < 10);
+  }
+}
+
+// Normal noise turns slivers, not the planes and lines of a part.
+void test_noisy_parts()
+{
+  const Scope scope("noisy parts");
+  for(const int columns : {10, 12, 24})
+  {
+    const Shape part = closed_cylinder(columns, 1, 1, 4);
+    const double edge = 2 * std::sin(CGAL_PI / columns); // the shortest ones
+    for(const double noise : {0.01, 0.03})
+      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), number_of_features(noisy(part, noise * edge)));
+  }
+}
+
 // a square in which one vertex was pulled across an edge: folded, not sharp
 void test_folds()
 {
@@ -247,6 +289,38 @@ void test_coarse_parts()
     }
 }
 
+// a coin whose rim is a fillet of a few steps: there is no sharp edge
+Shape coin(int columns, int steps)
+{
+  Shape s = closed_cylinder(columns, steps, 1, 1);
+  for(Vector_3& p : s.points)
+  {
+    const double r = std::hypot(p.x(), p.y()), angle = (p.z() - 0.5) * CGAL_PI, fillet = 0.1;
+    const double factor = r > 0 ? 1 + fillet * std::cos(angle) : 1;
+    p = Vector_3(factor * p.x(), factor * p.y(), fillet * std::sin(angle));
+  }
+  return s;
+}
+
+void test_rounded_parts()
+{
+  const Scope scope("rounded parts");
+  double least_volume = 1; // without the limits of parts
+  for(const int steps : {5, 7, 12})
+  {
+    const Shape start = coin(24, steps);
+    RCO_CHECK_EQUAL(number_of_features(start), std::size_t(0));
+    const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
+    const Outcome free = run(start, RCO::Minimum_angle_energy(), params::detect_features(false));
+    const Mesh before = make_mesh<Mesh>(start);
+    RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
+    RCO_CHECK_LESS(RCO::normal_deviation(make_mesh<Mesh>(after.shape), before).share_above_20,
+                   0.005);
+    least_volume = (std::min)(least_volume, volume(free.shape) / volume(start));
+  }
+  RCO_CHECK_LESS(least_volume, 0.97); // the test can fail
+}
+
 // Nowhere more than the default, nor than a part of what is there, and no jumps.
 void test_local_bounds()
 {
@@ -277,10 +351,13 @@ void test_local_bounds()
 int main()
 {
   test_detection();
+  test_fading_lines();
+  test_noisy_parts();
   test_folds();
   test_keeping();
   test_strips();
   test_coarse_parts();
+  test_rounded_parts();
   test_local_bounds();
   return report();
 }

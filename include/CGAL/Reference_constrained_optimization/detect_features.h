@@ -42,6 +42,9 @@ struct Feature_report
   /// the share of edges with a dihedral angle above 40 degrees among those above 20; above 0.65 it is a
   /// part, above 0.4 too if `turned_share` is below 0.25.
   double sharp_share = 0;
+  /// the same share of the areas beside these edges, of the smaller face each, which noise affects less;
+  /// above 0.4 it is a part if `turned_share` is below 0.45.
+  double sharp_area_share = 0;
   /// the share of edges with a dihedral angle above 20 degrees.
   double turned_share = 0;
 };
@@ -55,8 +58,9 @@ struct Feature_report
  * edges form lines between smooth regions; on a scan, an organic shape or a coarse mesh of one, dihedral
  * angles have all values, and sharp edges lie among others that are nearly as sharp. Each connected
  * component is classified separately, by the shares that `Feature_report` holds. The features of a part are
- * all edges with a dihedral angle of 40 degrees or more, except for folds: those above 120 degrees with a
- * face that is inverted with respect to the sum of the normals at its vertices.
+ * all edges with a dihedral angle of 40 degrees or more, except for folds (those above 120 degrees with a
+ * face that is inverted with respect to the sum of the normals at its vertices), and their continuations
+ * where the angle fades, down to 5 degrees.
  *
  * `CGAL::reference_constrained_optimize()` calls it for the reference unless its parameter
  * `detect_features` is `false` or the user constrains edges.
@@ -93,6 +97,7 @@ Feature_report detect_features(const FaceGraph& mesh,
   report.amount_of_sharp_edges = features.statistics.amount();
   report.crisp_share = features.statistics.crisp_share();
   report.sharp_share = features.statistics.sharp_share();
+  report.sharp_area_share = features.statistics.sharp_area_share();
   report.turned_share = features.statistics.turned_share();
   int f = 0;
   for(const typename Graph_traits::face_descriptor face : faces(mesh))

@@ -145,7 +145,8 @@ void optimize(const FaceRange& range,
                                       CGAL::internal_np::edge_is_constrained_t>::value;
   Detected_features features;
   if(loop_parameters.detect_features && !has_reference_lines)
-    features = Feature_detection(surface).result();
+    features = Feature_detection(surface, elements.criterion() == Element_criterion::smallest_angle)
+                 .result();
   interruption.check();
   if(features.number_of_edges > 0)
     constrain(is_same ? features_of_polygons(copy.mesh, surface, features.is_feature)

@@ -26,8 +26,11 @@ struct Feature_statistics
   double sharp_length = 0; // of edges with a dihedral angle above 40 degrees
   // of those with adjacent edges of less than a third of their dihedral angle
   double crisp_length = 0;
+  double bent_length = 0;                        // between 10 and 40 degrees
   std::size_t sharp_edges = 0, turned_edges = 0; // with a dihedral angle above 40, 20 degrees
   std::size_t edges = 0;
+  // areas beside the same edges, of the smaller face each: noise turns slivers, and so counts little
+  double sharp_area = 0, turned_area = 0;
   double flat_area = 0; // of faces with a coplanar neighbour
 
   // dimensionless; lines that are short compared with the component are not significant
@@ -37,6 +40,7 @@ struct Feature_statistics
   {
     return turned_edges > 0 ? double(sharp_edges) / double(turned_edges) : 0;
   }
+  double sharp_area_share() const { return turned_area > 0 ? sharp_area / turned_area : 0; }
   double flat_share() const { return area > 0 ? flat_area / area : 0; }
   double turned_share() const { return edges > 0 ? double(turned_edges) / double(edges) : 0; }
   // it consists of planes and strips; or sharp edges form lines, or hardly any edge has an angle that is
@@ -44,7 +48,13 @@ struct Feature_statistics
   bool is_mechanical() const
   {
     return amount() > 0.25 && (flat_share() > 0.8 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
+                               (sharp_area_share() > 0.4 && turned_share() < 0.45) ||
                                (sharp_share() > 0.4 && turned_share() < 0.25));
+  }
+  // planes and strips without a sharp edge: fillets of a few steps each
+  bool is_rounded() const
+  {
+    return flat_share() > 0.8 && area > 0 && bent_length / std::sqrt(area) > 0.25;
   }
 };
 
@@ -67,9 +77,11 @@ struct Detected_features
 class Feature_detection
 {
 public:
-  explicit Feature_detection(const Reference_surface& surface)
+  // `takes_rounded`: whether parts without sharp edges are mechanical, too
+  explicit Feature_detection(const Reference_surface& surface, bool takes_rounded = false)
     : m_surface(surface),
-      m_mesh(surface.mesh())
+      m_mesh(surface.mesh()),
+      m_takes_rounded(takes_rounded)
   {
     m_result.is_feature.assign(m_mesh.number_of_corners(), 0);
     m_result.is_mechanical.assign(m_mesh.number_of_faces(), 0);
@@ -89,7 +101,7 @@ public:
 
 private:
   // degrees; the exterior angles of a regular polygon of nine vertices are 40, up to rounding
-  static constexpr double sharp_angle = 39.9, small_angle = 20, flat_angle = 1;
+  static constexpr double sharp_angle = 39.9, small_angle = 20, bent_angle = 10, flat_angle = 1;
 
   void compute_dihedral_angles()
   {
@@ -124,23 +136,29 @@ private:
     std::vector<int> sharp; // corners
     for(const int f : component)
     {
-      e.area += 0.5 * m_surface.face_normal(f).norm();
+      e.area += face_area(f);
       bool has_coplanar_neighbour = false;
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         has_coplanar_neighbour =
           has_coplanar_neighbour || (m_mesh.opposite[c] >= 0 && m_dihedral_angle[c] < flat_angle);
-      e.flat_area += has_coplanar_neighbour ? 0.5 * m_surface.face_normal(f).norm() : 0;
+      e.flat_area += has_coplanar_neighbour ? face_area(f) : 0;
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
       {
         if(m_mesh.opposite[c] < c)
           continue;
         ++e.edges;
+        const bool is_bent = m_dihedral_angle[c] > bent_angle && m_dihedral_angle[c] <= sharp_angle;
+        e.bent_length += is_bent ? length(c) : 0;
         if(!(m_dihedral_angle[c] > small_angle) || is_fold(c))
           continue;
+        const double area =
+          (std::min)(face_area(f), face_area(m_mesh.corner_face[m_mesh.opposite[c]]));
         ++e.turned_edges;
+        e.turned_area += area;
         if(!(m_dihedral_angle[c] > sharp_angle))
           continue;
         ++e.sharp_edges;
+        e.sharp_area += area;
         e.sharp_length += length(c);
         e.crisp_length += is_crisp(c) ? length(c) : 0;
         sharp.push_back(c);
@@ -150,14 +168,79 @@ private:
                is_mechanical = e.is_mechanical();
     if(is_mechanical != was_mechanical ? is_mechanical : e.area > m_result.statistics.area)
       m_result.statistics = e;
-    if(!is_mechanical)
+    if(!is_mechanical && !(m_takes_rounded && e.is_rounded()))
       return;
     m_has_mechanical_parts = true;
     for(const int f : component)
       m_result.is_mechanical[f] = 1;
     for(const int c : sharp)
-      m_result.is_feature[c] = m_result.is_feature[m_mesh.opposite[c]] = 1;
-    m_result.number_of_edges += sharp.size();
+      add(c);
+    for(const int c : sharp)
+    {
+      follow(c);
+      follow(m_mesh.opposite[c]);
+    }
+  }
+
+  void add(int c)
+  {
+    m_result.is_feature[c] = m_result.is_feature[m_mesh.opposite[c]] = 1;
+    ++m_result.number_of_edges;
+  }
+
+  // A line that ends at the target of c goes on while its edges are crisp: where surfaces of a part meet
+  // along a line, their angle may fade.
+  void follow(int c)
+  {
+    const double faded_angle = 5; // degrees
+    while(true)
+    {
+      const int d = continuation(c, 0.7);
+      if(d < 0 || is_line_vertex(m_mesh.target(c), c) || !(m_dihedral_angle[d] > faded_angle) ||
+         !is_crisp(d))
+        return;
+      add(d);
+      c = d;
+    }
+  }
+
+  // whether another feature edge than that of c ends at v
+  bool is_line_vertex(int v, int c) const
+  {
+    for(int k = m_mesh.vertex_begin[v]; k < m_mesh.vertex_begin[v + 1]; ++k)
+      if(const int d = m_mesh.vertex_corners[k]; d != m_mesh.opposite[c] && m_result.is_feature[d])
+        return true;
+    return false;
+  }
+
+  // The edge at the target of c that goes on in its direction, with the largest dihedral angle; -1 if there
+  // is none.
+  int continuation(int c, double smallest_cosine) const
+  {
+    const int v = m_mesh.target(c);
+    const Vector_3 ahead = direction(c).normalized();
+    int result = -1;
+    double best = 0;
+    for(int k = m_mesh.vertex_begin[v]; k < vertex_end(v); ++k)
+    {
+      const int d = m_mesh.vertex_corners[k]; // leaves v
+      if(m_mesh.target(d) == m_mesh.source(c) || m_mesh.opposite[d] < 0)
+        continue;
+      const double cosine = ahead.dot(direction(d).normalized());
+      if(cosine > smallest_cosine && m_dihedral_angle[d] * cosine > best)
+      {
+        best = m_dihedral_angle[d] * cosine;
+        result = d;
+      }
+    }
+    return result;
+  }
+
+  // of the corners of v that are looked at
+  int vertex_end(int v) const
+  {
+    const int largest_valence = 64;
+    return (std::min)(m_mesh.vertex_begin[v + 1], m_mesh.vertex_begin[v] + largest_valence);
   }
 
   Vector_3 direction(int c) const
@@ -165,6 +248,7 @@ private:
     return m_surface.points()[m_mesh.target(c)] - m_surface.points()[m_mesh.source(c)];
   }
   double length(int c) const { return direction(c).norm(); }
+  double face_area(int f) const { return 0.5 * m_surface.face_normal(f).norm(); }
 
   // Whether the dihedral angles of adjacent edges are much smaller: those of three quarters of the edges at
   // its ends, except for its continuations and for edges of about the same angle, where lines meet.
@@ -184,29 +268,14 @@ private:
   // at the target of c
   void collect_adjacent_angles(int c)
   {
-    const int v = m_mesh.target(c), from = m_mesh.source(c);
-    const Vector_3 ahead = direction(c).normalized();
+    const int v = m_mesh.target(c), ahead = continuation(c, 0.5);
     const std::size_t first = m_adjacent_angles.size();
-    double best = 0;
-    std::size_t continuation = std::size_t(-1);
-    const int largest_valence = 64; // edges of a vertex
-    const int end =
-      (std::min)(m_mesh.vertex_begin[v + 1], m_mesh.vertex_begin[v] + largest_valence);
-    for(int k = m_mesh.vertex_begin[v]; k < end; ++k)
+    for(int k = m_mesh.vertex_begin[v]; k < vertex_end(v); ++k)
     {
-      const int d = m_mesh.vertex_corners[k]; // leaves v
-      if(m_mesh.target(d) == from || m_mesh.opposite[d] < 0)
-        continue;
-      const double cosine = ahead.dot(direction(d).normalized());
-      if(cosine > 0.5 && m_dihedral_angle[d] * cosine > best)
-      {
-        best = m_dihedral_angle[d] * cosine;
-        continuation = m_adjacent_angles.size();
-      }
-      m_adjacent_angles.push_back(m_dihedral_angle[d]);
+      const int d = m_mesh.vertex_corners[k];
+      if(m_mesh.target(d) != m_mesh.source(c) && m_mesh.opposite[d] >= 0 && d != ahead)
+        m_adjacent_angles.push_back(m_dihedral_angle[d]);
     }
-    if(continuation != std::size_t(-1))
-      m_adjacent_angles.erase(m_adjacent_angles.begin() + continuation);
     m_adjacent_angles.erase(
       std::remove_if(m_adjacent_angles.begin() + first, m_adjacent_angles.end(),
                      [&](double angle) { return angle >= 0.75 * m_dihedral_angle[c]; }),
@@ -228,6 +297,7 @@ private:
 
   const Reference_surface& m_surface;
   const Indexed_mesh& m_mesh;
+  bool m_takes_rounded;
   std::vector<double> m_dihedral_angle; // per corner: of its edge, in degrees
   std::vector<double> m_adjacent_angles;
   bool m_has_mechanical_parts = false;
