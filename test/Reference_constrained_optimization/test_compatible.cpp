@@ -4,7 +4,9 @@
 
 // Compatible remeshing: the energy, initial meshes from landmarks, and the optimization from them.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
@@ -15,117 +17,15 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
-#include <chrono>
 #include <cstring>
 #include <limits>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
 typedef CGAL::Polyhedron_3<Epick> Polyhedron;
 typedef RCO::Compatible_remeshing_energy Energy;
-
-// ---------------------------------------------------------------------------------- shapes
-
-typedef std::function<Vector_3(const Vector_3&)> Deformation;
-
-Shape deformed(Shape s, const Deformation& f)
-{
-  for(Vector_3& p : s.points)
-    p = f(p);
-  return s;
-}
-
-Shape reversed(Shape s)
-{
-  for(std::vector<int>& f : s.faces)
-    std::reverse(f.begin(), f.end());
-  return s;
-}
-
-// the unit sphere with meridians
-Shape meridian_sphere(int columns, int rows)
-{
-  const auto angle = [=](double t) { return pi * (1 + t * (rows - 2)) / rows; };
-  Shape s = revolved(
-    columns, rows - 2, [=](double t) { return std::sin(angle(t)); },
-    [=](double t) { return -std::cos(angle(t)); });
-  const int bottom = s.add(0, 0, -1), top = s.add(0, 0, 1);
-  for(int i = 0; i < columns; ++i)
-  {
-    const int j = (i + 1) % columns, last = (rows - 2) * columns;
-    s.triangle(j, i, bottom);
-    s.triangle(last + i, last + j, top);
-  }
-  return s;
-}
-
-// of the unit sphere
-Vector_3 bumpy(const Vector_3& p)
-{
-  return p * (1 + 0.2 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * std::sin(5 * p.z()) +
-              0.1 * std::cos(4 * p.y() - 2 * p.x()));
-}
-Vector_3 ellipsoidal(const Vector_3& p) { return Vector_3(1.5 * p.x(), 0.8 * p.y(), p.z()); }
-Vector_3 twisted(const Vector_3& p)
-{
-  const double a = 0.7 * p.x(), c = std::cos(a), s = std::sin(a);
-  return Vector_3(p.x(), c * p.y() - s * p.z(), s * p.y() + c * p.z());
-}
-Vector_3 bent(const Vector_3& p)
-{
-  const double r = 1.6, a = p.x() / r;
-  return Vector_3((r + p.z()) * std::sin(a), p.y(), (r + p.z()) * std::cos(a) - r);
-}
-// of the unit square
-Vector_3 hilly(const Vector_3& p)
-{
-  const Vector_3 d = p - Vector_3(0.6, 0.45, 0);
-  return Vector_3(p.x(), p.y(), 0.35 * std::exp(-8 * d.squaredNorm()) + 0.1 * p.x() * p.x());
-}
-Vector_3 arched(const Vector_3& p)
-{
-  return Vector_3(1.2 * p.x(), p.y() + 0.1 * p.x(), 0.3 * std::sin(pi * p.x()) * (0.6 + p.y()));
-}
-
-// the unit square, `columns` and `rows` wide
-Shape square(int columns, int rows, bool quads = false)
-{
-  return deformed(plane_grid(columns, rows, 1, quads), [=](const Vector_3& p) -> Vector_3 {
-    return Vector_3(p.x(), p.y() * columns / rows, 0);
-  });
-}
-
-Shape octahedron()
-{
-  Shape s;
-  for(int i = 0; i < 3; ++i)
-    for(const double x : {1., -1.})
-      s.add(i == 0 ? x : 0, i == 1 ? x : 0, i == 2 ? x : 0);
-  for(const int x : {0, 1})
-    for(const int y : {2, 3})
-      for(const int z : {4, 5})
-        (x + y + z) % 2 == 0 ? s.triangle(x, y, z) : s.triangle(x, z, y);
-  return s;
-}
-
-int nearest(const Shape& s, const Vector_3& p)
-{
-  int best = 0;
-  for(int v = 0; v < int(s.points.size()); ++v)
-    if((s.points[v] - p).norm() < (s.points[best] - p).norm())
-      best = v;
-  return best;
-}
-
-// ------------------------------------------------------------------- measures, made anew here
 
 Eigen::Matrix2d gram(const Shape& s, const std::vector<int>& t)
 {
@@ -187,8 +87,6 @@ bool same_connectivity(const Shape& a, const Shape& b)
   }
   return true;
 }
-
-// -------------------------------------------------------------------- meshes on their surface
 
 // Vertices move on a surface in small random steps; a step that would invert a face or fold an edge is not
 // made. `mean_displacement` is in edge lengths.
@@ -330,8 +228,6 @@ optimized(const Shape& source, const Shape& start, const Shape& reference, bool 
   return out;
 }
 
-// --------------------------------------------------------------------------------- the energy
-
 template <typename Source, typename NamedParameters = params::Default_named_parameters>
 RCO::Result start_of(Mesh mesh,
                      const Mesh& reference,
@@ -458,7 +354,7 @@ void test_energy_mismatches()
     b = {old[0], ends[0], old[2]};
     refuses(source, "face " + std::to_string(2 * k) + " has the vertices");
   }
-  refuses(reversed(shape), "face 0 has the vertices");
+  refuses(turned_round(shape), "face 0 has the vertices");
   refuses(without_faces(shape, [=](int f) { return f >= n - 2; }),
           "face " + std::to_string(n - 2) + " of the mesh has no counterpart");
   {
@@ -485,8 +381,6 @@ void test_energy_mismatches()
                        " of the source has a triangle without area");
   }
 }
-
-// --------------------------------------------------------------------------- known optimum
 
 void test_known_optimum(const std::string& name, const Shape& shape, std::uint64_t seed)
 {
@@ -519,8 +413,6 @@ void test_known_optima()
   test_known_optimum("a torus", torus(72, 36), 6);
   test_known_optimum("a hill", deformed(square(50, 50), hilly), 7);
 }
-
-// ------------------------------------------------------------------------------- initial maps
 
 struct Pair
 {
@@ -666,13 +558,13 @@ void test_closed_maps()
     RCO_CHECK(same_bits(plain.shape, mapped(pair, "the same spheres").shape));
     RCO_CHECK_LESS(plain.report.capped_energy, 20.);
     // the reference turned inside out: no other mesh comes of it
-    pair.reference = reversed(pair.reference);
+    pair.reference = turned_round(pair.reference);
     const Mapped other = mapped(pair, "spheres of opposite orientations");
     RCO_CHECK(volume(other.shape) > 0);
     RCO_CHECK_NEAR(other.report.capped_energy, plain.report.capped_energy,
                    0.05 * plain.report.capped_energy);
     // a vertex without faces, in the midst of the others
-    pair.reference = reversed(pair.reference);
+    pair.reference = turned_round(pair.reference);
     pair.source.points.insert(pair.source.points.begin() + 3, Vector_3(7, 8, 9));
     for(std::vector<int>& f : pair.source.faces)
       for(int& v : f)
@@ -963,8 +855,6 @@ void test_map_errors()
   refuses(pair, "trees led to a bijective map");
 }
 
-// ---------------------------------------------------------------------------------- internals
-
 // each path is passed in both directions, the border in one, and every side starts where the last
 // one ended
 void check_boundary(const internal::Landmark_tree& tree)
@@ -1129,8 +1019,6 @@ void test_flattenings()
   RCO_CHECK(!check_flattening(closed_cylinder(10, 120, 0.1, 12), {0, 3, 6}, {{0, 1}, {1, 2}}));
 }
 
-// ----------------------------------------------------------- optimization from initial meshes
-
 void test_from_initial_meshes()
 {
   const auto run = [](const Pair& pair, const std::string& name) {
@@ -1164,8 +1052,6 @@ void test_from_initial_meshes()
       "a blob and an ellipsoid");
   run(square_pair({Vector_2(0, 0), Vector_2(1, 0), Vector_2(1, 1), Vector_2(0, 1)}), "two squares");
 }
-
-// -------------------------------------------------------------------------------- hard starts
 
 void check_hard_start(const std::string& name,
                       const Shape& source,
@@ -1232,8 +1118,6 @@ void test_hard_starts()
     RCO_CHECK_LESS(largest, 3.);
   }
 }
-
-// ------------------------------------------------------------------------------ on the surface
 
 // The language allows private members to be named where a template is instantiated explicitly.
 template <typename Tag, typename Tag::type Member>
@@ -1430,13 +1314,6 @@ void test_shared_diagonals()
 
 int main()
 {
-  const auto start = std::chrono::steady_clock::now();
-  const auto timed = [&](const char* name, const std::function<void()>& test) {
-    test();
-    std::cout << "["
-              << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
-              << " s] " << name << std::endl;
-  };
   timed("the energy", test_energy);
   timed("the energy of quads", test_energy_of_quads);
   timed("sources that do not match", test_energy_mismatches);

@@ -5,15 +5,15 @@
 // Feature edges of mechanical parts are detected, and kept by default; bounds by the size of what is there;
 // the mean of angles where slivers cannot be opened.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,12 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace params = CGAL::parameters;
 using namespace rco_test;
-
-typedef CGAL::Simple_cartesian<double> Kernel;
-typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
 // in how many coordinates a point is at the surface of the unit cube
 int number_of_planes(const Vector_3& p)

@@ -4,7 +4,8 @@
 
 // Flattening of patches, the checks on it, and location in the plane.
 
-#include "test_util.h"
+#include "checks.h"
+#include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
@@ -12,7 +13,6 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Exact;
@@ -436,8 +436,6 @@ void test_injectivity_checks()
     RCO_CHECK_EQUAL(internal::has_simple_border(indexed(bent), flat), turns < 1);
   }
 }
-
-// ------------------------------------------------------------------------------------------
 
 // triangles that hold p, borders included, exactly
 std::vector<int>

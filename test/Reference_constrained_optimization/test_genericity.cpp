@@ -5,7 +5,9 @@
 // Several data structures, kernels and number types, units and places, parts of a mesh, and where its
 // vertices are on R.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
@@ -20,8 +22,6 @@
 #include <CGAL/Linear_cell_complex_for_bgl_combinatorial_map_helper.h>
 #include <CGAL/Polygon_mesh_processing/locate.h>
 #include <CGAL/Polyhedron_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/graph_traits_Linear_cell_complex_for_combinatorial_map.h>
 
 #include <cmath>
@@ -29,16 +29,10 @@
 #include <list>
 #include <utility>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
 namespace PMP = CGAL::Polygon_mesh_processing;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Simple_cartesian<double> Kernel;
-typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 typedef boost::graph_traits<Mesh>::face_descriptor Face;
-
-// -------------------------------------------------------------------------- data structures
 
 // gives the same as a Surface_mesh does, to the last bit of the mesh's number type
 template <typename M>
@@ -101,8 +95,6 @@ void test_models()
   test_model<CGAL::Surface_mesh<Epeck::Point_3>>("Surface_mesh, Epeck", 0);
 }
 
-// ---------------------------------------------------------------------------------- locations
-
 template <typename R>
 void check_locations(Mesh mesh, const R& reference, bool relaxes)
 {
@@ -150,8 +142,6 @@ void test_locations()
   check_locations(make_mesh<Mesh>(scrambled(plane, 0.4, 9, onto_plane)), make_mesh<Mesh>(plane),
                   true);
 }
-
-// ----------------------------------------------------------------------------- part of a mesh
 
 // optimizes the faces that `is_in` names, and checks what holds for any of them
 template <typename Tag, typename NamedParameters, typename IsIn>
@@ -317,8 +307,6 @@ void test_mixed_faces()
     RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
   }
 }
-
-// ------------------------------------------------------------------------- units and places
 
 struct Place
 {

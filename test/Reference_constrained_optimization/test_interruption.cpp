@@ -5,23 +5,18 @@
 // Stopping: how often the visitor is asked, and what the mesh is like when it says no, throws, or the
 // time is up, at any moment.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
-
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <chrono>
 #include <stdexcept>
 #include <thread>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace params = CGAL::parameters;
 using namespace rco_test;
-
-typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
 #define RCO_IS_SLOW

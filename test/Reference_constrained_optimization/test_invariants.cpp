@@ -4,12 +4,11 @@
 
 // Accepted steps obey all invariants of a list, also additional ones.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
-
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <cmath>
 #include <cstddef>
@@ -17,8 +16,6 @@
 #include <tuple>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
 // A user-defined invariant: a bound on the displacement of vertices.

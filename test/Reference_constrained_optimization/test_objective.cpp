@@ -4,12 +4,11 @@
 
 // Energies are sums of terms: elements with weights, stencils of vertices anywhere, sums of energies.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
-
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
 #include <array>
@@ -18,13 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
-namespace params = CGAL::parameters;
 using namespace rco_test;
-
-typedef CGAL::Simple_cartesian<double> Kernel;
-typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
 // optimizes a mesh on itself as reference, and checks properties that hold for every energy
 template <typename Energy, typename NamedParameters>
@@ -44,15 +37,6 @@ Shape optimized(const Shape& start,
   return make_shape(mesh);
 }
 
-int center_of(const Shape& s, const Vector_3& p)
-{
-  int best = 0;
-  for(int v = 1; v < int(s.points.size()); ++v)
-    if((s.points[v] - p).norm() < (s.points[best] - p).norm())
-      best = v;
-  return best;
-}
-
 // A vertex with a large weight moves to the point of R that is closest to its target; with a smaller one it
 // ends in between. Weight 0 has no effect.
 void test_attraction()
@@ -60,7 +44,7 @@ void test_attraction()
   Scope scope("attraction");
   const int n = 12;
   const Shape s = plane_grid(n, n);
-  const int v = center_of(s, Vector_3(0.5, 0.5, 0));
+  const int v = nearest(s, Vector_3(0.5, 0.5, 0));
   const Vector_3 target = s.points[v] + Vector_3(0.6 / n, -0.3 / n, 0.5);
   const auto pulled = [&](double weight) {
     const RCO::Attraction_energy attraction({{std::size_t(v), target}});
@@ -86,7 +70,7 @@ void test_attraction()
   RCO_CHECK_LESS(last, 0.01);
 
   const Shape sphere = icosphere(3);
-  const int pole = center_of(sphere, Vector_3(0, 0, 1));
+  const int pole = nearest(sphere, Vector_3(0, 0, 1));
   const Vector_3 off = Vector_3(0.05, 0.03, 1).normalized();
   const RCO::Attraction_energy attraction({{std::size_t(pole), 1.5 * off}});
   RCO::Result result;

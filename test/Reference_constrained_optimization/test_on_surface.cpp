@@ -5,7 +5,9 @@
 // Steps on the surface: patches that are not flattened, step sizes, faces in a direction, the barrier on
 // angles, the finishing stage as a whole, restarts, and clusters of vertices.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
 
@@ -18,8 +20,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Vertex_step_sizes.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <Eigen/Cholesky>
 
@@ -27,15 +27,9 @@
 #include <tbb/global_control.h>
 #endif
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
 typedef std::vector<std::vector<int>> Patches;
-
-// ----------------------------------------------------------------------------------- partition
 
 bool is_connected(const Indexed_mesh& mesh, const std::vector<int>& faces)
 {
@@ -168,8 +162,6 @@ void test_partition()
     RCO_CHECK(divided(mesh, one, 30, 0) == Patches(1, {17}));
   }
 }
-
-// -------------------------------------------------------------------------------- parts of steps
 
 struct Fake_mover
 {
@@ -321,8 +313,6 @@ void test_vertex_step_sizes()
   }
 }
 
-// ----------------------------------------------------------------------------- ways into faces
-
 // the best of many ways from the point to the boundary of a triangle
 double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], const Vector_3& along)
 {
@@ -410,8 +400,6 @@ void test_face_in_direction(const std::string& name, const Shape& shape)
   }
 }
 
-// -------------------------------------------------------------------------------- points by place
-
 void test_point_index()
 {
   const Scope scope("point index");
@@ -456,8 +444,6 @@ void test_point_index()
     RCO_CHECK_EQUAL(same.find(Vector_3(0, 1, 2)), -1);
   }
 }
-
-// ---------------------------------------------------------------------------- barrier on angles
 
 template <typename Density>
 void test_barrier(const std::string& name, const Density& density, double steepness)
@@ -557,8 +543,6 @@ void test_barrier(const std::string& name, const Density& density, double steepn
                  barrier.value(element, Vector_2(1, -0.3).asDiagonal()));
 }
 
-// ------------------------------------------------------------------------------ finishing stage
-
 template <typename Tag>
 std::pair<Shape, RCO::Result>
 optimized(const Shape& start, const Shape& regular, bool finishes, unsigned int seed = 0)
@@ -607,8 +591,6 @@ void test_finishing(const std::string& name, const Shape& start, const Shape& re
   }
 #endif
 }
-
-// -------------------------------------------------------------------------------- restarting
 
 // the largest patch and the energy of each iteration
 struct Largest_patches : RCO::Default_visitor
@@ -659,8 +641,6 @@ void test_restarts()
       RCO_CHECK_LESS_EQUAL(visitor.energies[i], visitor.energies[i - 1] * (1 + 1e-12));
   }
 }
-
-// ------------------------------------------------------------------------------------- clusters
 
 // A saddle with a border where vertices nearly coincide with their neighbours, inside and at the border, as
 // marching cubes produce them. Faces at fixed vertices of the border stay sharp: the faces at these short

@@ -4,7 +4,9 @@
 
 // The whole optimization: what every result must satisfy, whatever the mesh.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
 #include <CGAL/reference_constrained_optimize.h>
@@ -13,22 +15,16 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #ifdef CGAL_LINKED_WITH_TBB
 #include <tbb/global_control.h>
 #endif
 
-#include <chrono>
 #include <cstring>
 #include <stdexcept>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
 
 struct Stopped : std::runtime_error
@@ -204,8 +200,6 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   return out;
 }
 
-// ---------------------------------------------------------- what the result should say, anew
-
 struct Measures
 {
   double energy = 0; // mean
@@ -360,8 +354,6 @@ Outcome optimized(const Shape& shape, const Shape& reference, const Options& opt
   return out;
 }
 
-// ------------------------------------------------------------------------ meshes by formulas
-
 // scrambled regular shapes become regular again
 void test_recovery(const Shape& regular,
                    const std::function<Vector_3(const Vector_3&)>& project,
@@ -456,14 +448,7 @@ void test_small_meshes()
   }
   {
     const Scope scope("an octahedron on a sphere");
-    Shape shape;
-    for(int i = 0; i < 3; ++i)
-      for(const double s : {1., -1.})
-        shape.add(i == 0 ? s : 0, i == 1 ? s : 0, i == 2 ? s : 0);
-    for(const int x : {0, 1})
-      for(const int y : {2, 3})
-        for(const int z : {4, 5})
-          (x + y + z) % 2 == 0 ? shape.triangle(x, y, z) : shape.triangle(x, z, y);
+    Shape shape = octahedron();
     shape.points[4] = Vector_3(0.5, 0.4, 0.7).normalized();
     const Outcome out = optimized(shape, icosphere(3));
     RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
@@ -530,8 +515,6 @@ void test_small_meshes()
   }
 }
 
-// ------------------------------------------------------------------------------- constraints
-
 void test_constraints()
 {
   const Scope scope("constraints");
@@ -591,8 +574,6 @@ void test_constraints()
     RCO_CHECK_LESS(35., smallest_angle(out.after));
   }
 }
-
-// --------------------------------------------------------------------------------- bad input
 
 void test_degenerate_faces()
 {
@@ -697,8 +678,6 @@ void test_thin_sheet()
   }
 }
 
-// ----------------------------------------------------------------------------- same and other
-
 void test_determinism()
 {
   const Scope scope("determinism");
@@ -788,8 +767,6 @@ void test_mesh_types()
   RCO_CHECK_EQUAL(r.initial_number_of_flips, std::size_t(0));
   RCO_CHECK_NEAR(r.final_energy, plain.result.final_energy, 0.05 * r.final_energy);
 }
-
-// ----------------------------------------------------------------------------------- endings
 
 // counts how often it is asked whether to go on, as after every few hundred trials of a search
 struct Question_counter : RCO::Default_visitor
@@ -929,8 +906,6 @@ void test_exponents()
   }
 }
 
-// ---------------------------------------------------------------------------------- real data
-
 bool test_data(const std::string& name, unsigned int iterations)
 {
   const Scope scope(name);
@@ -1046,13 +1021,6 @@ void test_drift(const std::string& name)
 
 int main()
 {
-  const auto start = std::chrono::steady_clock::now();
-  const auto timed = [&](const char* name, const std::function<void()>& test) {
-    test();
-    std::cout << "["
-              << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
-              << " s] " << name << std::endl;
-  };
   timed("recoveries", test_recoveries);
   timed("quads", test_quads);
   timed("small meshes", test_small_meshes);

@@ -4,31 +4,24 @@
 
 // Named parameters in all their spellings, and the refusal of what cannot be used.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/Polyhedron_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <array>
 #include <cstring>
 #include <limits>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 namespace tags = CGAL::Reference_constrained_optimization::internal_np;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Simple_cartesian<double> Kernel;
 typedef Kernel::Point_3 Point;
-typedef CGAL::Surface_mesh<Point> Mesh;
 typedef boost::graph_traits<Mesh>::vertex_descriptor Vertex;
-
-// ------------------------------------------------------------------------ chains of parameters
 
 template <typename Tag, typename Parameters>
 auto parameter(const Parameters& np, const Tag& tag)
@@ -115,8 +108,6 @@ void test_chains()
     internal::read_loop_parameters(internal::cgal_parameters(params::random_seed(3)));
   RCO_CHECK_EQUAL(of_cgal.random_seed, 3u);
 }
-
-// ------------------------------------------------------------------------- calls with parameters
 
 struct Patch_sizes : RCO::Default_visitor
 {
@@ -220,8 +211,6 @@ void test_calls()
     CGAL::reference_constrained_optimize(mesh, reference, energy, params::drift_bound(0.));
   RCO_CHECK_LESS_EQUAL(plain.final_energy, tight.final_energy);
 }
-
-// --------------------------------------------------------------------------------- bad input
 
 // the call throws Invalid_input with `text` in its message, and leaves every bit of the mesh alone
 template <typename M, typename R, typename Energy, typename NamedParameters>

@@ -5,32 +5,24 @@
 // Quad meshes and mixed ones: the elements of the energies for quads, known optima, what every
 // result must satisfy, and quads that are not convex.
 
-#include "test_meshes.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
-#include <chrono>
 #include <limits>
 #include <type_traits>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = RCO::internal;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 
-typedef CGAL::Simple_cartesian<double> Cartesian;
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
-typedef CGAL::Surface_mesh<Cartesian::Point_3> Mesh;
 
 namespace {
-
-// ------------------------------------------------------------------------- energies, written anew
 
 // |J|^2 and det J of the map from a rest triangle to the triangle (o, p, q) in space
 struct Shape_figures
@@ -116,8 +108,6 @@ Shape ground(int nx, int ny, double width = 1, double height = 1)
     p = Vector_3(width * p.x(), height * p.y() * nx / ny, 0);
   return s;
 }
-
-// ------------------------------------------------------------------------------------- runs
 
 // every accepted patch is better than before
 struct Recorder : RCO::Default_visitor
@@ -278,8 +268,6 @@ Outcome optimized(const Shape& shape,
   return run<CGAL::Sequential_tag>(mesh, make_mesh<Mesh>(reference), energy, options);
 }
 
-// ------------------------------------------------------------------------------------ elements
-
 template <typename Energy>
 std::vector<RCO::Energy_element>
 elements_of(const Energy& energy, const Indexed_mesh& mesh, std::size_t f, double mean_edge = 1)
@@ -415,8 +403,6 @@ void test_errors()
   refused(RCO::Quad_angle_energy());
 }
 
-// -------------------------------------------------------------------------------- known answers
-
 void test_plane_recovery()
 {
   const Scope scope("a plane grid becomes squares again");
@@ -520,8 +506,6 @@ void test_curved_recovery()
   as_good(ball, rough_ball, icosphere(4), RCO::Quad_angle_energy(1), "sphere, angles");
 }
 
-// ----------------------------------------------------------------------------------- invariants
-
 struct Case
 {
   std::string name;
@@ -605,7 +589,7 @@ void test_invariants_of(const Energy& energy, const std::string& name)
           invariants<CGAL::Polyhedron_3<Epick>>(c, which, energy, options);
           break;
         default:
-          invariants<CGAL::Polyhedron_3<Cartesian>>(c, which, energy, options);
+          invariants<CGAL::Polyhedron_3<Kernel>>(c, which, energy, options);
         }
       }
   }
@@ -659,8 +643,6 @@ void test_same()
     same(all[3], RCO::Quad_angle_energy(1), on_surface);
   }
 }
-
-// ----------------------------------------------------------------------------------- untangling
 
 template <typename Function>
 void for_energies_and_movers(const Function& function)
@@ -816,8 +798,6 @@ void test_near_degenerate()
   }
 }
 
-// ------------------------------------------------------------------------------ starts off R
-
 void test_off_reference()
 {
   const Scope scope("off the reference");
@@ -869,8 +849,6 @@ void test_off_reference()
       check(ball, icosphere(4), 0.08, 2e-3, RCO::Quad_angle_energy(2), options);
     }
 }
-
-// -------------------------------------------------------------------------------------- measures
 
 void test_measures()
 {
@@ -938,13 +916,6 @@ void test_measures()
 
 int main()
 {
-  const auto start = std::chrono::steady_clock::now();
-  const auto timed = [&](const char* name, const std::function<void()>& test) {
-    test();
-    std::cout << "["
-              << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
-              << " s] " << name << std::endl;
-  };
   timed("elements", test_elements);
   timed("errors", test_errors);
   timed("measures", test_measures);

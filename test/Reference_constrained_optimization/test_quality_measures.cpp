@@ -4,21 +4,18 @@
 
 // The measures on shapes whose figures are known.
 
-#include "test_meshes.h"
-#include "test_util.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <functional>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
 using namespace rco_test;
-typedef CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3> Mesh;
 
 namespace {
 
@@ -196,13 +193,6 @@ void test_sheets_turned_against_each_other()
   RCO_CHECK_EQUAL(RCO::orientation_defects(make_mesh<Mesh>(waves(4, 5)), surface).total(), 0u);
 }
 
-Shape transformed(Shape shape, const std::function<Vector_3(const Vector_3&)>& map)
-{
-  for(Vector_3& p : shape.points)
-    p = map(p);
-  return shape;
-}
-
 void test_normal_deviation()
 {
   const Scope scope("normal deviation");
@@ -224,7 +214,7 @@ void test_normal_deviation()
   Shape halves = plane_grid(8, 4);
   for(Vector_3& p : halves.points)
     p.x() = p.x() < 0.5 ? 0.25 + 0.5 * p.x() : p.x();
-  const Mesh bent = make_mesh<Mesh>(transformed(halves, bend));
+  const Mesh bent = make_mesh<Mesh>(deformed(halves, bend));
   Shape ground = plane_grid(3, 3, 4);
   for(Vector_3& p : ground.points)
     p -= Vector_3(1.7, 1.7, 0);
@@ -269,8 +259,8 @@ void test_feature_deviation()
       return p;
     return Vector_3(p.x() + 0.05 * (1 - 2 * p.x()), p.y() + 0.05 * (1 - 2 * p.y()), p.z());
   };
-  const RCO::Feature_deviation beveled = RCO::feature_deviation(
-    make_mesh<Mesh>(cube(10)), make_mesh<Mesh>(transformed(cube(10), bevel)));
+  const RCO::Feature_deviation beveled =
+    RCO::feature_deviation(make_mesh<Mesh>(cube(10)), make_mesh<Mesh>(deformed(cube(10), bevel)));
   RCO_CHECK_LESS(beveled.kept, 0.68);
   RCO_CHECK_LESS(0.5, beveled.kept); // two thirds, but for the corners
   RCO_CHECK_LESS(0.6, beveled.added);
@@ -278,7 +268,7 @@ void test_feature_deviation()
   RCO_CHECK_NEAR(beveled.before_to_after, 0.05 * std::sqrt(2.), 0.04);
   // no feature before: what is added is told in diagonals
   const Mesh flat = make_mesh<Mesh>(plane_grid(8, 8)), smooth = make_mesh<Mesh>(icosphere(3));
-  const Mesh folded = make_mesh<Mesh>(transformed(plane_grid(8, 8), [](const Vector_3& p) {
+  const Mesh folded = make_mesh<Mesh>(deformed(plane_grid(8, 8), [](const Vector_3& p) {
     return Vector_3(p.x(), p.y(), (std::max)(0., p.x() - 0.5));
   }));
   const RCO::Feature_deviation ridge = RCO::feature_deviation(flat, folded);
@@ -319,7 +309,7 @@ void test_large_fans()
   const auto time = [](int columns) {
     const Mesh mesh = make_mesh<Mesh>(closed_cylinder(columns, 1, 1, 1));
     const Mesh moved =
-      make_mesh<Mesh>(transformed(closed_cylinder(columns, 1, 1, 1), [](const Vector_3& p) {
+      make_mesh<Mesh>(deformed(closed_cylinder(columns, 1, 1, 1), [](const Vector_3& p) {
         return Vector_3(p.x() + (p.norm() < 0.5 ? 0.02 : 0.), p.y(), p.z());
       }));
     const std::clock_t start = std::clock();

@@ -4,23 +4,18 @@
 
 // relax_constraints: vertices of borders and of constrained lines slide, and stay on their lines.
 
-#include "test_meshes.h"
+#include "Random.h"
+#include "checks.h"
+#include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <CGAL/Polyhedron_3.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace params = CGAL::parameters;
 using namespace rco_test;
 using RCO::internal::Polyline_point;
 using RCO::internal::Polyline_set;
-
-typedef CGAL::Simple_cartesian<double> Kernel;
-typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
 void test_lines()
 {

@@ -4,14 +4,14 @@
 
 // Cone proxies, the disk guard, and the growing of patches.
 
-#include "test_util.h"
+#include "checks.h"
+#include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_rounds.h>
 
 #include <limits>
 #include <numeric>
 
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
 Eigen::Matrix3d turn(Random& random)
@@ -149,8 +149,6 @@ void test_cone_proxy()
   empty.add(Vector_3::Zero(), 0);
   RCO_CHECK(empty.fit().axis.allFinite());
 }
-
-// ------------------------------------------------------------------------------------------
 
 // Whether some faces are a disk, told from nothing but their lists of vertices.
 bool is_disk(const Indexed_mesh& mesh, const std::vector<int>& faces)

@@ -4,7 +4,8 @@
 
 // Densities and their derivatives, the factorization, the Newton system, the flip-free step, and planar optimization.
 
-#include "test_util.h"
+#include "checks.h"
+#include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
@@ -18,8 +19,6 @@
 
 #include <limits>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
 typedef Eigen::Matrix2d Matrix_2;
@@ -231,8 +230,6 @@ void test_symmetric_dirichlet()
     test_smooth_at(density, Vector_2(other, 0.02).asDiagonal(), Vector_2(0, 1).asDiagonal());
   test_general(density);
 }
-
-// ------------------------------------------------------------------------------------------
 
 void test_time_of_collapse()
 {
@@ -512,8 +509,6 @@ void test_newton_system()
   RCO_CHECK_LESS_EQUAL((solution.head<6>() - 0.5 * right.head<6>()).norm(), 1e-6);
   RCO_CHECK_LESS_EQUAL(solution.tail<2>().norm(), 1e-6);
 }
-
-// ------------------------------------------------------------------------------------------
 
 // triangles of a flat shape, whose rest shapes are equilateral
 internal::Planar_problem planar_problem(const Shape& shape, double edge)
@@ -825,8 +820,6 @@ void test_planar_optimizer(const Density& density, double best, const std::strin
   RCO_CHECK_EQUAL(optimizer.minimize(problem, density, u, 10, 1e-9).steps, 0);
   RCO_CHECK(u == before);
 }
-
-// ------------------------------------------------------------------------------------------
 
 void test_surface_metric()
 {

@@ -4,15 +4,14 @@
 
 // Closest points of the reference: in a triangle, globally, and locally on the same sheet.
 
-#include "test_util.h"
+#include "checks.h"
+#include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 
 #include <limits>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-namespace internal = CGAL::Reference_constrained_optimization::internal;
 using namespace rco_test;
 
 internal::Reference_surface surface_of(const Shape& shape)
@@ -282,8 +281,6 @@ void test_descend_on_double_sheet()
   }
 }
 
-// ------------------------------------------------------------------------------------------
-
 struct Mesh_on_surface
 {
   Indexed_mesh mesh;
@@ -435,8 +432,6 @@ void test_map_to_reference_on_plane()
     RCO_CHECK_LESS_EQUAL(is_damaged ? 1980 : 2000, exact);
   }
 }
-
-// ------------------------------------------------------------------------------------------
 
 void test_normals()
 {

@@ -7,8 +7,10 @@
 #ifndef RCO_TEST_MESHES_H
 #define RCO_TEST_MESHES_H
 
-#include "test_util.h"
+#include "shapes.h"
 
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/helpers.h>
 #include <CGAL/boost/graph/iterator.h>
@@ -26,6 +28,10 @@
 #include <vector>
 
 namespace rco_test {
+
+namespace params = CGAL::parameters;
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef CGAL::Surface_mesh<Kernel::Point_3> Mesh;
 
 // a shape as a model of MutableFaceGraph; vertices and faces keep their order
 template <typename Mesh>

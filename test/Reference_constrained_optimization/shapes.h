@@ -2,11 +2,10 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What all tests share: checks that do not depend on NDEBUG, random numbers that are the same
-// everywhere, and meshes made by formulas.
+// Meshes made by formulas, and measures of them.
 
-#ifndef RCO_TEST_UTIL_H
-#define RCO_TEST_UTIL_H
+#ifndef RCO_TEST_SHAPES_H
+#define RCO_TEST_SHAPES_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
@@ -14,175 +13,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <functional>
-#include <iostream>
 #include <map>
-#include <set>
-#include <sstream>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace rco_test {
 
-using CGAL::Reference_constrained_optimization::internal::Indexed_mesh;
-using CGAL::Reference_constrained_optimization::internal::Vector_2;
-using CGAL::Reference_constrained_optimization::internal::Vector_3;
+namespace RCO = CGAL::Reference_constrained_optimization;
+namespace internal = RCO::internal;
+using internal::Indexed_mesh;
+typedef Eigen::Vector2d Vector_2;
+typedef Eigen::Vector3d Vector_3;
 
 const double pi = 3.14159265358979323846;
-
-// ---------------------------------------------------------------------------------- checks
-
-struct Counts
-{
-  long checks = 0, failures = 0;
-  std::vector<std::string> scopes; // what is being tested, innermost last
-};
-
-inline Counts& counts()
-{
-  static Counts c;
-  return c;
-}
-
-// names what is being tested for as long as it lives
-class Scope
-{
-public:
-  explicit Scope(const std::string& name) { counts().scopes.push_back(name); }
-  ~Scope() { counts().scopes.pop_back(); }
-  Scope(const Scope&) = delete;
-  Scope& operator=(const Scope&) = delete;
-};
-
-inline bool
-check(bool holds, const char* expression, const std::string& values, const char* file, int line)
-{
-  Counts& c = counts();
-  ++c.checks;
-  if(holds)
-    return true;
-  // a loop that fails everywhere need not fill the screen
-  if(++c.failures <= 20)
-  {
-    std::cerr << file << ":" << line << ": FAILED " << expression;
-    if(!values.empty())
-      std::cerr << "  [" << values << "]";
-    for(const std::string& s : c.scopes)
-      std::cerr << "  in " << s;
-    std::cerr << std::endl;
-  }
-  return false;
-}
-
-template <typename A, typename B>
-std::string values(const A& a, const B& b)
-{
-  std::ostringstream out;
-  out.precision(17);
-  out << a << " and " << b;
-  return out.str();
-}
-
-// the exit code of a test
-inline int report()
-{
-  std::cout << counts().checks << " checks, " << counts().failures << " failures" << std::endl;
-  return counts().failures == 0 && counts().checks > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}
-
-#define RCO_CHECK(condition)                                                                       \
-  ::rco_test::check(static_cast<bool>(condition), #condition, std::string(), __FILE__, __LINE__)
-
-#define RCO_CHECK_BINARY(a, b, op)                                                                 \
-  [&](const auto& rco_a, const auto& rco_b) {                                                      \
-    const bool rco_holds = rco_a op rco_b;                                                         \
-    return ::rco_test::check(rco_holds, #a " " #op " " #b,                                         \
-                             rco_holds ? std::string() : ::rco_test::values(rco_a, rco_b),         \
-                             __FILE__, __LINE__);                                                  \
-  }((a), (b))
-#define RCO_CHECK_EQUAL(a, b) RCO_CHECK_BINARY(a, b, ==)
-#define RCO_CHECK_LESS(a, b) RCO_CHECK_BINARY(a, b, <)
-#define RCO_CHECK_LESS_EQUAL(a, b) RCO_CHECK_BINARY(a, b, <=)
-
-// false for NaN, too
-#define RCO_CHECK_NEAR(a, b, tolerance)                                                            \
-  [&](double rco_a, double rco_b) {                                                                \
-    return ::rco_test::check(std::abs(rco_a - rco_b) <= (tolerance), #a " near " #b,               \
-                             ::rco_test::values(rco_a, rco_b), __FILE__, __LINE__);                \
-  }((a), (b))
-
-// `statement` throws `Exception`, and the message contains `text`
-#define RCO_CHECK_THROWS(statement, Exception, text)                                               \
-  do                                                                                               \
-  {                                                                                                \
-    std::string rco_message = "nothing was thrown";                                                \
-    bool rco_thrown = false;                                                                       \
-    try                                                                                            \
-    {                                                                                              \
-      statement;                                                                                   \
-    }                                                                                              \
-    catch(const Exception& rco_e)                                                                  \
-    {                                                                                              \
-      rco_thrown = true;                                                                           \
-      rco_message = rco_e.what();                                                                  \
-    }                                                                                              \
-    catch(const std::exception& rco_e)                                                             \
-    {                                                                                              \
-      rco_message = std::string("another type was thrown: ") + rco_e.what();                       \
-    }                                                                                              \
-    ::rco_test::check(rco_thrown&& rco_message.find(text) != std::string::npos,                    \
-                      #statement " throws " #Exception " about " #text, rco_message, __FILE__,     \
-                      __LINE__);                                                                   \
-  } while(false)
-
-// -------------------------------------------------------------------------- random numbers
-
-class Random
-{
-public:
-  explicit Random(std::uint64_t seed) : m_state(seed * 2862933555777941757ull + 3037000493ull)
-  {
-    bits();
-    bits();
-  }
-
-  // uniform in [0, 1)
-  double operator()() { return double(bits()) / 4294967296.; }
-  double operator()(double low, double high) { return low + (high - low) * (*this)(); }
-  // uniform in {0, ..., n - 1}
-  int index(int n) { return int((*this)() * n); }
-
-  Vector_3 in_cube(double half)
-  {
-    const double x = (*this)(-half, half), y = (*this)(-half, half), z = (*this)(-half, half);
-    return Vector_3(x, y, z);
-  }
-  // inside a triangle, uniformly
-  Vector_3 barycentric()
-  {
-    double a = (*this)(), b = (*this)();
-    if(a + b > 1)
-    {
-      a = 1 - a;
-      b = 1 - b;
-    }
-    return Vector_3(1 - a - b, a, b);
-  }
-
-private:
-  std::uint64_t bits()
-  {
-    m_state = m_state * 6364136223846793005ull + 1442695040888963407ull;
-    return m_state >> 32;
-  }
-
-  std::uint64_t m_state;
-};
-
-// ---------------------------------------------------------------------------------- shapes
 
 // A polygon mesh as points and faces.
 struct Shape
@@ -203,15 +47,6 @@ struct Shape
     second ? triangle(b, c, d) : triangle(a, c, d);
   }
 };
-
-// of triangles
-inline double volume(const Shape& s)
-{
-  double sum = 0;
-  for(const std::vector<int>& t : s.faces)
-    sum += s.points[t[0]].dot(s.points[t[1]].cross(s.points[t[2]])) / 6;
-  return sum;
-}
 
 inline Indexed_mesh indexed(const Shape& shape)
 {
@@ -517,123 +352,53 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
   return s;
 }
 
-// both meshes as one, the second shifted
-inline Shape joined(const Shape& a, const Shape& b, const Vector_3& shift)
+// the unit sphere with meridians
+inline Shape meridian_sphere(int columns, int rows)
 {
-  Shape s = a;
-  for(const Vector_3& p : b.points)
-    s.points.push_back(p + shift);
-  for(std::vector<int> f : b.faces)
+  const auto angle = [=](double t) { return pi * (1 + t * (rows - 2)) / rows; };
+  Shape s = revolved(
+    columns, rows - 2, [=](double t) { return std::sin(angle(t)); },
+    [=](double t) { return -std::cos(angle(t)); });
+  const int bottom = s.add(0, 0, -1), top = s.add(0, 0, 1);
+  for(int i = 0; i < columns; ++i)
   {
-    for(int& v : f)
-      v += int(a.points.size());
-    s.faces.push_back(f);
+    const int j = (i + 1) % columns, last = (rows - 2) * columns;
+    s.triangle(j, i, bottom);
+    s.triangle(last + i, last + j, top);
   }
   return s;
 }
 
-// the same with every face oriented the other way
-inline Shape turned_round(const Shape& shape)
-{
-  Shape s = shape;
-  for(std::vector<int>& f : s.faces)
-    std::reverse(f.begin(), f.end());
-  return s;
-}
-
-// with the given quads split into triangles
-inline Shape split(const Shape& shape, const std::function<bool(int)>& is_split)
+inline Shape octahedron()
 {
   Shape s;
-  s.points = shape.points;
-  for(int i = 0; i < int(shape.faces.size()); ++i)
-  {
-    const std::vector<int>& f = shape.faces[i];
-    if(f.size() == 4 && is_split(i))
-      s.quad(f[0], f[1], f[2], f[3], i % 2 == 1);
-    else
-      s.faces.push_back(f);
-  }
+  for(int i = 0; i < 3; ++i)
+    for(const double x : {1., -1.})
+      s.add(i == 0 ? x : 0, i == 1 ? x : 0, i == 2 ? x : 0);
+  for(const int x : {0, 1})
+    for(const int y : {2, 3})
+      for(const int z : {4, 5})
+        (x + y + z) % 2 == 0 ? s.triangle(x, y, z) : s.triangle(x, z, y);
   return s;
 }
 
-// without the given faces; isolated vertices stay
-inline Shape without_faces(const Shape& shape, const std::function<bool(int)>& drop)
+inline int nearest(const Shape& s, const Vector_3& p)
 {
-  Shape s;
-  s.points = shape.points;
-  for(int f = 0; f < int(shape.faces.size()); ++f)
-    if(!drop(f))
-      s.faces.push_back(shape.faces[f]);
-  return s;
+  int best = 0;
+  for(int v = 0; v < int(s.points.size()); ++v)
+    if((s.points[v] - p).norm() < (s.points[best] - p).norm())
+      best = v;
+  return best;
 }
 
-// without the vertices that no face uses
-inline Shape compacted(const Shape& shape)
+// of triangles
+inline double volume(const Shape& s)
 {
-  Shape s;
-  std::vector<int> index(shape.points.size(), -1);
-  for(std::vector<int> f : shape.faces)
-  {
-    for(int& v : f)
-    {
-      if(index[v] < 0)
-      {
-        index[v] = int(s.points.size());
-        s.points.push_back(shape.points[v]);
-      }
-      v = index[v];
-    }
-    s.faces.push_back(f);
-  }
-  return s;
+  double sum = 0;
+  for(const std::vector<int>& t : s.faces)
+    sum += s.points[t[0]].dot(s.points[t[1]].cross(s.points[t[2]])) / 6;
+  return sum;
 }
-
-// Vertices away from the border moved at random by up to `amount` of their shortest edge, then back
-// onto the surface by `project`.
-inline Shape scrambled(const Shape& shape,
-                       double amount,
-                       std::uint64_t seed,
-                       const std::function<Vector_3(const Vector_3&)>& project)
-{
-  Shape s = shape;
-  const Indexed_mesh mesh = indexed(shape);
-  std::vector<double> shortest(shape.points.size(), 1e300);
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-  {
-    const int a = mesh.source(c), b = mesh.target(c);
-    const double length = (shape.points[a] - shape.points[b]).norm();
-    shortest[a] = (std::min)(shortest[a], length);
-    shortest[b] = (std::min)(shortest[b], length);
-  }
-  Random random(seed);
-  for(std::size_t v = 0; v < s.points.size(); ++v)
-  {
-    const Vector_3 move = random.in_cube(amount);
-    if(!mesh.is_border_vertex[v] && mesh.vertex_begin[v] < mesh.vertex_begin[v + 1])
-      s.points[v] = project(shape.points[v] + shortest[v] * move);
-  }
-  return s;
-}
-
-inline Vector_3 onto_plane(const Vector_3& p) { return Vector_3(p.x(), p.y(), 0); }
-inline Vector_3 onto_sphere(const Vector_3& p) { return p.normalized(); }
-inline std::function<Vector_3(const Vector_3&)> onto_cylinder(double radius)
-{
-  return [=](const Vector_3& p) {
-    const double r = std::hypot(p.x(), p.y());
-    return Vector_3(p.x() * radius / r, p.y() * radius / r, p.z());
-  };
-}
-inline std::function<Vector_3(const Vector_3&)> onto_torus(double big, double small)
-{
-  return [=](const Vector_3& p) {
-    const Vector_3 ring = Vector_3(p.x(), p.y(), 0).normalized() * big;
-    return Vector_3(ring + (p - ring).normalized() * small);
-  };
-}
-
-// ------------------------------------------------------------------- measures of triangles
 
 inline double smallest_angle(const Vector_3& a, const Vector_3& b, const Vector_3& c)
 {
@@ -675,4 +440,4 @@ inline double area(const Shape& s)
 
 } // namespace rco_test
 
-#endif // RCO_TEST_UTIL_H
+#endif // RCO_TEST_SHAPES_H
