@@ -2,18 +2,23 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Random numbers that are the same everywhere.
+// Random numbers that are the same everywhere, and matrices made of them.
 
 #ifndef RCO_TEST_RANDOM_H
 #define RCO_TEST_RANDOM_H
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstdint>
 
 namespace rco_test {
 
+typedef Eigen::Matrix2d Matrix_2;
+typedef Eigen::Vector2d Vector_2;
 typedef Eigen::Vector3d Vector_3;
+
+const double pi = 3.14159265358979323846;
 
 class Random
 {
@@ -56,6 +61,19 @@ private:
 
   std::uint64_t m_state;
 };
+
+inline Matrix_2 rotation(double angle)
+{
+  Matrix_2 r;
+  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  return r;
+}
+
+inline Matrix_2 with_singular_values(double s1, double s2, Random& random)
+{
+  const Matrix_2 u = rotation(random(0, 2 * pi)), v = rotation(random(0, 2 * pi));
+  return u * Vector_2(s1, s2).asDiagonal() * v;
+}
 
 } // namespace rco_test
 

@@ -7,7 +7,6 @@
 #ifndef RCO_TEST_DEFORMATIONS_H
 #define RCO_TEST_DEFORMATIONS_H
 
-#include "Random.h"
 #include "shapes.h"
 
 namespace rco_test {

@@ -19,7 +19,6 @@
 
 #include <boost/graph/graph_traits.hpp>
 
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -109,21 +108,6 @@ inline Shape read_off(const std::string& name)
     shape.faces.push_back(corners);
   }
   return in ? shape : Shape();
-}
-
-inline bool same_bits(const Vector_3& a, const Vector_3& b)
-{
-  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
-}
-
-inline bool same_bits(const Shape& a, const Shape& b)
-{
-  if(a.points.size() != b.points.size() || a.faces != b.faces)
-    return false;
-  for(std::size_t i = 0; i < a.points.size(); ++i)
-    if(!same_bits(a.points[i], b.points[i]))
-      return false;
-  return true;
 }
 
 } // namespace rco_test

@@ -1,5 +1,5 @@
 # Checks that the internal headers lie in rooms that include downwards only: each header those of its own
-# room and of the rooms before it.
+# room and of the rooms before it; and that each room has a test with its name.
 #
 #   cmake -D SOURCE=<root of the project> -P rooms.cmake
 
@@ -37,6 +37,9 @@ foreach(room IN LISTS rooms)
   file(GLOB headers "${SOURCE}/include/${prefix}/${room}/*.h")
   if(NOT headers)
     message(SEND_ERROR "internal/${room} is empty (rooms.cmake)")
+  endif()
+  if(NOT EXISTS "${CMAKE_CURRENT_LIST_DIR}/test_${room}.cpp")
+    message(SEND_ERROR "internal/${room} has no test_${room}.cpp")
   endif()
   foreach(header IN LISTS headers)
     get_filename_component(name "${header}" NAME)

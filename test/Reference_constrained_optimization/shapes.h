@@ -7,12 +7,15 @@
 #ifndef RCO_TEST_SHAPES_H
 #define RCO_TEST_SHAPES_H
 
+#include "Random.h"
+
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <utility>
@@ -23,11 +26,6 @@ namespace rco_test {
 namespace RCO = CGAL::Reference_constrained_optimization;
 namespace internal = RCO::internal;
 using internal::Indexed_mesh;
-typedef Eigen::Vector2d Vector_2;
-typedef Eigen::Vector3d Vector_3;
-
-const double pi = 3.14159265358979323846;
-
 // A polygon mesh as points and faces.
 struct Shape
 {
@@ -45,6 +43,17 @@ struct Shape
   {
     triangle(a, b, second ? d : c);
     second ? triangle(b, c, d) : triangle(a, c, d);
+  }
+  // quads with the vertices at(i, j), split along alternating diagonals or not
+  template <typename At>
+  void grid(int columns, int rows, bool quads, const At& at)
+  {
+    for(int j = 0; j < rows; ++j)
+      for(int i = 0; i < columns; ++i)
+        if(quads)
+          faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        else
+          quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
   }
 };
 
@@ -71,13 +80,7 @@ inline Shape plane_grid(int nx, int ny, double length = 1, bool quads = false)
   for(int j = 0; j <= ny; ++j)
     for(int i = 0; i <= nx; ++i)
       s.add(length * i / nx, length * j / nx, 0);
-  const auto at = [&](int i, int j) { return j * (nx + 1) + i; };
-  for(int j = 0; j < ny; ++j)
-    for(int i = 0; i < nx; ++i)
-      if(quads)
-        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-      else
-        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  s.grid(nx, ny, quads, [&](int i, int j) { return j * (nx + 1) + i; });
   return s;
 }
 
@@ -113,13 +116,7 @@ inline Shape revolved(int columns,
       const double r = radius(double(j) / rows), a = turn * i / columns;
       s.add(r * std::cos(a), r * std::sin(a), height(double(j) / rows));
     }
-  const auto at = [&](int i, int j) { return j * n + i % n; };
-  for(int j = 0; j < rows; ++j)
-    for(int i = 0; i < columns; ++i)
-      if(quads)
-        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-      else
-        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  s.grid(columns, rows, quads, [&](int i, int j) { return j * n + i % n; });
   return s;
 }
 
@@ -201,13 +198,7 @@ inline Shape torus(int columns, int rows, double big = 1, double small = 0.4, bo
       const double r = big + small * std::cos(b);
       s.add(r * std::cos(a), r * std::sin(a), small * std::sin(b));
     }
-  const auto at = [&](int i, int j) { return (j % rows) * columns + i % columns; };
-  for(int j = 0; j < rows; ++j)
-    for(int i = 0; i < columns; ++i)
-      if(quads)
-        s.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-      else
-        s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  s.grid(columns, rows, quads, [&](int i, int j) { return (j % rows) * columns + i % columns; });
   return s;
 }
 
@@ -310,6 +301,15 @@ inline Shape cube(int n, bool quads = false)
   return s;
 }
 
+// in how many coordinates a point is at the surface of the unit cube
+inline int number_of_planes(const Vector_3& p)
+{
+  int count = 0;
+  for(int i = 0; i < 3; ++i)
+    count += std::abs(p(i)) < 1e-12 || std::abs(p(i) - 1) < 1e-12;
+  return count;
+}
+
 // a cube's squares on the unit sphere: quads with 8 irregular vertices
 inline Shape cube_sphere(int n)
 {
@@ -334,9 +334,7 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
       }
   const int m = (n + 1) * (n + 1);
   const auto at = [&](int i, int j) { return j * (n + 1) + i; };
-  for(int j = 0; j < n; ++j)
-    for(int i = 0; i < n; ++i)
-      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+  s.grid(n, n, false, at);
   for(int j = 0; j < n; ++j)
     for(int i = 0; i < n; ++i)
       s.quad(m + at(i, j), m + at(i, j + 1), m + at(i + 1, j + 1), m + at(i + 1, j),
@@ -350,6 +348,16 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
     side(at(0, i + 1), at(0, i));
   }
   return s;
+}
+
+// whether a face is on the first sheet of double_sheet()
+inline bool is_upper(const Shape& sheet, int f)
+{
+  const int half = int(sheet.points.size()) / 2;
+  for(const int v : sheet.faces[f])
+    if(v >= half)
+      return false;
+  return true;
 }
 
 // the unit sphere with meridians
@@ -389,6 +397,21 @@ inline int nearest(const Shape& s, const Vector_3& p)
     if((s.points[v] - p).norm() < (s.points[best] - p).norm())
       best = v;
   return best;
+}
+
+inline bool same_bits(const Vector_3& a, const Vector_3& b)
+{
+  return std::memcmp(a.data(), b.data(), sizeof(double) * 3) == 0;
+}
+
+inline bool same_bits(const Shape& a, const Shape& b)
+{
+  if(a.points.size() != b.points.size() || a.faces != b.faces)
+    return false;
+  for(std::size_t i = 0; i < a.points.size(); ++i)
+    if(!same_bits(a.points[i], b.points[i]))
+      return false;
+  return true;
 }
 
 // of triangles

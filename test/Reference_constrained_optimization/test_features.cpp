@@ -2,14 +2,16 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Feature edges of mechanical parts are detected, and kept by default; bounds by the size of what is there;
-// the mean of angles where slivers cannot be opened.
+// Feature edges of mechanical parts are kept by default, also where slivers cannot be opened. With
+// relax_constraints, vertices of borders and of constrained lines slide, and stay on their lines.
 
 #include "checks.h"
 #include "deformations.h"
 #include "meshes.h"
 
 #include <CGAL/reference_constrained_optimize.h>
+
+#include <CGAL/Polyhedron_3.h>
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
@@ -18,20 +20,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 using namespace rco_test;
-
-// in how many coordinates a point is at the surface of the unit cube
-int number_of_planes(const Vector_3& p)
-{
-  int count = 0;
-  for(int i = 0; i < 3; ++i)
-    count += std::abs(p(i)) < 1e-12 || std::abs(p(i) - 1) < 1e-12;
-  return count;
-}
 
 // the cube's vertices moved at random within its faces and along its edges
 Shape jittered_cube(int n, double amount, bool quads = false)
@@ -48,103 +43,6 @@ Shape jittered_cube(int n, double amount, bool quads = false)
   return s;
 }
 
-Shape noisy(Shape s, double amount)
-{
-  Random random(6);
-  for(Vector_3& p : s.points)
-    p += random.in_cube(amount);
-  return s;
-}
-
-std::pair<RCO::Feature_report, Mesh::Property_map<Mesh::Edge_index, bool>> detected(Mesh& mesh)
-{
-  auto map = mesh.add_property_map<Mesh::Edge_index, bool>("e:is_feature", false).first;
-  const RCO::Feature_report report = RCO::detect_features(mesh, map);
-  std::size_t count = 0;
-  for(const Mesh::Edge_index e : mesh.edges())
-    count += map[e];
-  RCO_CHECK_EQUAL(count, report.number_of_feature_edges);
-  RCO_CHECK_EQUAL(count > 0, report.has_features);
-  return {report, map};
-}
-
-std::size_t number_of_features(const Shape& shape)
-{
-  Mesh mesh = make_mesh<Mesh>(shape);
-  return detected(mesh).first.number_of_feature_edges;
-}
-
-void test_detection()
-{
-  const Scope scope("detection");
-  const int n = 6;
-  for(const bool quads : {false, true})
-  {
-    Mesh mesh = make_mesh<Mesh>(cube(n, quads));
-    const auto map = detected(mesh).second;
-    for(const Mesh::Edge_index e : mesh.edges())
-    {
-      const auto p = mesh.point(mesh.vertex(e, 0)), q = mesh.point(mesh.vertex(e, 1));
-      const Vector_3 middle(0.5 * (p.x() + q.x()), 0.5 * (p.y() + q.y()), 0.5 * (p.z() + q.z()));
-      RCO_CHECK_EQUAL(bool(map[e]), number_of_planes(middle) == 2);
-    }
-  }
-  RCO_CHECK_EQUAL(number_of_features(noisy(cube(n), 0.03 / n)), std::size_t(12 * n));
-  RCO_CHECK_EQUAL(number_of_features(turned_round(cube(n))), std::size_t(12 * n));
-  RCO_CHECK_EQUAL(number_of_features(closed_cylinder(24, 4, 1, 2)), std::size_t(48));
-  RCO_CHECK_EQUAL(number_of_features(tetrahedron()), std::size_t(6)); // all there is is sharp
-
-  const Shape ball = icosphere(3);
-  for(const double noise : {0., 0.01, 0.03, 0.06})
-    RCO_CHECK_EQUAL(number_of_features(noisy(ball, noise)), std::size_t(0));
-  RCO_CHECK_EQUAL(number_of_features(torus(30, 12)), std::size_t(0));
-  // each component is judged by itself
-  RCO_CHECK_EQUAL(number_of_features(joined(cube(n), noisy(ball, 0.06), Vector_3(5, 0, 0))),
-                  std::size_t(12 * n));
-}
-
-// a roof whose ridge turns by 100 degrees at one end and not at all at the other
-Shape fading_roof(int columns, int rows)
-{
-  Shape roof = plane_grid(columns, 2 * rows);
-  for(Vector_3& p : roof.points)
-    p = Vector_3(6 * p.x(), 2 * p.y() - 1,
-                 -std::abs(2 * p.y() - 1) * std::tan(50 * (1 - p.x()) * CGAL_PI / 180));
-  return roof;
-}
-
-// A line that is sharp where it begins is followed to where it is hardly bent, and nothing else is taken.
-void test_fading_lines()
-{
-  const Scope scope("fading lines");
-  const int columns = 60;
-  Mesh mesh = make_mesh<Mesh>(fading_roof(columns, 6));
-  const auto map = detected(mesh).second;
-  for(const Mesh::Edge_index e : mesh.edges())
-  {
-    const auto p = mesh.point(mesh.vertex(e, 0)), q = mesh.point(mesh.vertex(e, 1));
-    const bool is_ridge = std::abs(p.y()) + std::abs(q.y()) < 1e-12;
-    const double angle = 100 * (1 - 0.5 * (p.x() + q.x()) / 6); // up to a degree
-    if(map[e])
-      RCO_CHECK(is_ridge && angle > 4);
-    else
-      RCO_CHECK(!is_ridge || angle < 10);
-  }
-}
-
-// Normal noise turns slivers, not the planes and lines of a part.
-void test_noisy_parts()
-{
-  const Scope scope("noisy parts");
-  for(const int columns : {10, 12, 24})
-  {
-    const Shape part = closed_cylinder(columns, 1, 1, 4);
-    const double edge = 2 * std::sin(CGAL_PI / columns); // the shortest ones
-    for(const double noise : {0.01, 0.03})
-      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), number_of_features(noisy(part, noise * edge)));
-  }
-}
-
 // a square in which one vertex was pulled across an edge: folded, not sharp
 void test_folds()
 {
@@ -154,9 +52,9 @@ void test_folds()
   Mesh mesh = make_mesh<Mesh>(plane);
   const auto before = RCO::orientation_defects(mesh, make_mesh<Mesh>(plane_grid(8, 8)));
   RCO_CHECK_LESS(std::size_t(0), before.total());
-  RCO_CHECK_EQUAL(detected(mesh).first.number_of_feature_edges, std::size_t(0));
   const RCO::Result r =
     CGAL::reference_constrained_optimize(mesh, mesh, RCO::Minimum_angle_energy());
+  RCO_CHECK_EQUAL(r.number_of_feature_edges, std::size_t(0));
   RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, std::size_t(0));
 }
 
@@ -264,8 +162,8 @@ void test_coarse_parts()
     {
       const Shape start = closed_cylinder(columns, rows, 1, 3);
       const Mesh before = make_mesh<Mesh>(start);
-      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), number_of_features(start));
       const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
+      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), after.result.number_of_feature_edges);
       const Mesh mesh = make_mesh<Mesh>(after.shape);
       RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
       RCO_CHECK_LESS(0.95, RCO::feature_deviation(before, mesh).kept);
@@ -284,75 +182,191 @@ void test_coarse_parts()
     }
 }
 
-// a coin whose rim is a fillet of a few steps: there is no sharp edge
-Shape coin(int columns, int steps)
+// a plane of squares bent along lines of constant x, so that none of its faces changes its shape
+Vector_3 fold_at(const Vector_3& p, double x, double angle)
 {
-  Shape s = closed_cylinder(columns, steps, 1, 1);
-  for(Vector_3& p : s.points)
-  {
-    const double r = std::hypot(p.x(), p.y()), angle = (p.z() - 0.5) * CGAL_PI, fillet = 0.1;
-    const double factor = r > 0 ? 1 + fillet * std::cos(angle) : 1;
-    p = Vector_3(factor * p.x(), factor * p.y(), fillet * std::sin(angle));
-  }
-  return s;
+  const double d = (std::max)(0., p.x() - x);
+  return Vector_3(p.x() - d + d * std::cos(angle), p.y(), d * std::sin(angle));
 }
 
-void test_rounded_parts()
+struct Case
 {
-  const Scope scope("rounded parts");
-  double least_volume = 1; // without the limits of parts
-  for(const int steps : {5, 7, 12})
-  {
-    const Shape start = coin(24, steps);
-    RCO_CHECK_EQUAL(number_of_features(start), std::size_t(0));
-    const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
-    const Outcome free = run(start, RCO::Minimum_angle_energy(), params::detect_features(false));
-    const Mesh before = make_mesh<Mesh>(start);
-    RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
-    RCO_CHECK_LESS(RCO::normal_deviation(make_mesh<Mesh>(after.shape), before).share_above_20,
-                   0.005);
-    least_volume = (std::min)(least_volume, volume(free.shape) / volume(start));
-  }
-  RCO_CHECK_LESS(least_volume, 0.97); // the test can fail
-}
+  std::string name;
+  Shape start, reference;
+  std::vector<char> is_line_vertex; // slides
+  std::function<double(const Vector_3&)> distance_to_line;
+  std::set<std::pair<int, int>> lines; // constrained edges, smaller vertex first
+};
 
-// Nowhere more than the default, nor than a part of what is there, and no jumps.
-void test_local_bounds()
+template <typename M, typename Energy>
+void check_case(const Case& test, const Energy& energy, bool on_surface, double largest_deviation)
 {
-  const Scope scope("local bounds");
-  Shape shape = plane_grid(30, 30);
-  for(Vector_3& p : shape.points) // finer and finer towards a corner
-    p = Vector_3(std::pow(p.x(), 3), std::pow(p.y(), 3), 0);
-  const RCO::internal::Reference_surface surface(copy_of(shape));
-  const double bound = 0.25 * surface.mean_edge_length();
-  const Indexed_mesh& mesh = surface.mesh();
-  for(const bool mechanical : {false, true})
-  {
-    const std::vector<char> is_mechanical(mesh.number_of_faces(), mechanical);
-    const std::vector<double> bounds = RCO::internal::local_bounds(surface, is_mechanical, bound);
-    RCO_CHECK_EQUAL(bounds.size(), shape.points.size());
-    RCO_CHECK_LESS_EQUAL(*std::max_element(bounds.begin(), bounds.end()),
-                         mechanical ? 0.2 * bound : bound);
-    RCO_CHECK_LESS(*std::min_element(bounds.begin(), bounds.end()), 0.1 * bound);
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
+  Scope scope(test.name + (on_surface ? ", on the surface" : ", flattened"));
+  const auto run = [&](bool relax) {
+    M mesh = make_mesh<M>(test.start);
+    const Mesh reference = make_mesh<Mesh>(test.reference);
+    auto is_constrained = get(CGAL::dynamic_edge_property_t<bool>(), mesh);
+    auto index = get(CGAL::dynamic_vertex_property_t<int>(), mesh);
+    int i = 0;
+    for(const auto v : vertices(mesh))
+      put(index, v, i++);
+    for(const auto e : edges(mesh))
     {
-      const int v = mesh.source(c), w = mesh.target(c);
-      RCO_CHECK_LESS_EQUAL(bounds[v],
-                           bounds[w] + 0.51 * (shape.points[v] - shape.points[w]).norm());
+      const int a = get(index, source(e, mesh)), b = get(index, target(e, mesh));
+      put(is_constrained, e, test.lines.count({(std::min)(a, b), (std::max)(a, b)}) > 0);
     }
+    const RCO::Result r =
+      CGAL::reference_constrained_optimize(mesh, reference, energy,
+                                           params::use_on_surface_steps(on_surface)
+                                             .energy_tolerance(1e-6)
+                                             .edge_is_constrained_map(is_constrained)
+                                             .relax_constraints(relax));
+    RCO_CHECK(r.final_energy < r.initial_energy);
+    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads,
+                    std::size_t(0));
+    RCO_CHECK(RCO::distance_to_reference(mesh, reference).is_on_reference());
+    return std::make_pair(make_shape(mesh), RCO::corner_angle_statistics(mesh).standard_deviation);
+  };
+  const auto relaxed = run(true), fixed = run(false);
+
+  const Indexed_mesh indices = indexed(test.start);
+  std::size_t moved = 0;
+  for(std::size_t v = 0; v < test.start.points.size(); ++v)
+  {
+    const Vector_3 &before = test.start.points[v], &after = relaxed.first.points[v];
+    bool is_on_line = indices.is_border_vertex[v];
+    for(const auto& edge : test.lines)
+      is_on_line = is_on_line || edge.first == int(v) || edge.second == int(v);
+    if(!is_on_line)
+      continue;
+    RCO_CHECK(same_bits(before, fixed.first.points[v]));
+    if(test.is_line_vertex[v])
+    {
+      RCO_CHECK_LESS(test.distance_to_line(after), 1e-12);
+      moved += (after - before).norm() > 1e-3;
+    }
+    else
+      RCO_CHECK(same_bits(before, after));
   }
+  RCO_CHECK_LESS(std::size_t(5), moved);
+  // what is regular but for the places of the vertices on the lines becomes regular
+  RCO_CHECK_LESS(relaxed.second, largest_deviation);
+  RCO_CHECK_LESS(2 * relaxed.second, fixed.second);
+}
+
+// a square whose border vertices are displaced along the border
+Case square_case(int n)
+{
+  Case test;
+  test.name = "square";
+  test.start = plane_grid(n, n, 1, true);
+  test.reference = plane_grid(7, 7, 1);
+  Random random(3);
+  for(Vector_3& p : test.start.points)
+  {
+    const auto is_end = [](double x) { return x == 0 || x == 1; };
+    const double dx = random(-0.3, 0.3) / n, dy = random(-0.3, 0.3) / n;
+    test.is_line_vertex.push_back(is_end(p.x()) != is_end(p.y()));
+    if(!is_end(p.x()))
+      p.x() += dx;
+    if(!is_end(p.y()))
+      p.y() += dy;
+  }
+  test.distance_to_line = [](const Vector_3& p) {
+    return (std::min)({std::abs(p.x()), std::abs(1 - p.x()), std::abs(p.y()), std::abs(1 - p.y())});
+  };
+  return test;
+}
+
+// two squares that meet at a right angle in a constrained crease, whose ends are on the border
+Case crease_case(int n)
+{
+  Case test = square_case(2 * n);
+  test.name = "crease";
+  const int row = 2 * n + 1;
+  for(int j = 0; j < row; ++j)
+  {
+    Vector_3& p = test.start.points[j * row + n];
+    p.x() = 0.5;
+    if(j > 0)
+      test.lines.insert({(j - 1) * row + n, j * row + n});
+    test.is_line_vertex[j * row + n] = j > 0 && j < 2 * n;
+  }
+  const double angle = 0.5 * pi;
+  test.reference = plane_grid(8, 8, 1);
+  for(Vector_3& p : test.start.points)
+    p = fold_at(p, 0.5, angle);
+  for(Vector_3& p : test.reference.points)
+    p = fold_at(p, 0.5, angle);
+  test.distance_to_line = [](const Vector_3& p) {
+    const double u = p.x() + p.z(); // along the folded square
+    return (std::min)(
+      {u, std::abs(1 - u), std::abs(u - 0.5), std::abs(p.y()), std::abs(1 - p.y())});
+  };
+  return test;
+}
+
+// A half disk and the wall below its rim, of facets that the mesh is coarser than: the line that the
+// mesh forms along the rim is not the reference's.
+Case rim_case(int n)
+{
+  Case test = square_case(2 * n);
+  test.name = "rim";
+  const int row = 2 * n + 1, facets = 5 * n + 3;
+  for(int j = 0; j < row; ++j)
+  {
+    test.start.points[j * row + n].x() = 0.5;
+    if(j > 0)
+      test.lines.insert({(j - 1) * row + n, j * row + n});
+    test.is_line_vertex[j * row + n] = j > 0 && j < 2 * n;
+  }
+  const auto on_rim = [facets](double k) {
+    return Vector_3(std::cos(pi * k / facets), std::sin(pi * k / facets), 0);
+  };
+  const auto bend = [&](const Vector_3& p) {
+    const double k = (std::min)(std::floor(p.y() * facets + 1e-9), facets - 1.);
+    const double part = p.y() * facets - k, r = p.x() + 0.5;
+    const Vector_3 rim = (1 - part) * on_rim(k) + part * on_rim(k + 1);
+    return Vector_3((std::min)(r, 1.) * rim - (std::max)(r - 1, 0.) * Vector_3::UnitZ());
+  };
+  const int columns = 4;
+  test.reference = plane_grid(columns, facets, 1);
+  for(Vector_3& p : test.reference.points)
+    p.y() *= double(columns) / facets;
+  for(Shape* shape : {&test.start, &test.reference})
+    for(Vector_3& p : shape->points)
+      p = bend(p);
+  test.distance_to_line = [=](const Vector_3& p) {
+    // to the straight sides, and to the polygons at three radii and heights
+    double least = p.z() < 0 ? std::hypot(std::abs(p.x()) - 1, p.y()) : std::abs(p.y());
+    for(int k = 0; k < facets; ++k)
+      for(const auto& ring :
+          {std::make_pair(0.5, 0.), std::make_pair(1., 0.), std::make_pair(1., -0.5)})
+      {
+        const Vector_3 a = ring.first * on_rim(k) + ring.second * Vector_3::UnitZ(),
+                       d = ring.first * (on_rim(k + 1) - on_rim(k));
+        const double t = (std::min)(1., (std::max)(0., d.dot(p - a) / d.squaredNorm()));
+        least = (std::min)(least, (a + t * d - p).norm());
+      }
+    return least;
+  };
+  return test;
 }
 
 int main()
 {
-  test_detection();
-  test_fading_lines();
-  test_noisy_parts();
   test_folds();
   test_keeping();
   test_strips();
   test_coarse_parts();
-  test_rounded_parts();
-  test_local_bounds();
+  const RCO::Quad_regularity_energy regularity(1);
+  const RCO::Quad_angle_energy angle;
+  for(const bool on_surface : {true, false})
+  {
+    check_case<Mesh>(square_case(12), regularity, on_surface, 0.3);
+    check_case<CGAL::Polyhedron_3<Kernel>>(square_case(12), angle, on_surface, 1);
+    check_case<Mesh>(crease_case(7), regularity, on_surface, 0.3);
+    check_case<Mesh>(rim_case(6), angle, on_surface, 6);
+  }
   return report();
 }

@@ -2,11 +2,13 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Flattening of patches, the checks on it, and location in the plane.
+// Flattening of patches, the checks on it, location in the plane, and mapping back.
 
 #include "checks.h"
-#include "deformations.h"
+#include "surfaces.h"
 
+#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
@@ -596,6 +598,158 @@ void test_double_edge()
   }
 }
 
+struct Mesh_on_surface
+{
+  Indexed_mesh mesh;
+  internal::Element_set elements;
+  internal::Optimization_state state;
+
+  Mesh_on_surface(const Shape& shape,
+                  const internal::Reference_surface& surface,
+                  const std::function<bool(int)>& face_is_allowed)
+    : mesh(indexed(shape)),
+      elements(
+        RCO::Minimum_angle_energy(),
+        RCO::Energy_context(mesh.face_begin, mesh.corner_vertex, shape.points.size(), 1, 1, 1)),
+      state{mesh, surface, elements, {}, {}}
+  {
+    for(std::size_t v = 0; v < shape.points.size(); ++v)
+    {
+      internal::Located_vertex placed;
+      double best = std::numeric_limits<double>::infinity();
+      for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
+      {
+        const internal::Surface_point s = surface.closest_in_face(shape.points[v], f);
+        if(face_is_allowed(f) && (s.position - shape.points[v]).norm() < best)
+        {
+          best = (s.position - shape.points[v]).norm();
+          placed.on_reference = s;
+        }
+      }
+      placed.position = placed.on_reference.position;
+      placed.normal = surface.normal(placed.on_reference);
+      state.vertices.push_back(placed);
+      state.is_free.push_back(!mesh.is_border_vertex[v]);
+    }
+  }
+};
+
+internal::Patch whole_patch(const Mesh_on_surface& placed)
+{
+  std::vector<int> faces;
+  for(int f = 0; f < placed.mesh.number_of_faces(); ++f)
+    faces.push_back(f);
+  return internal::Patch_builder(placed.mesh).build(faces, placed.state);
+}
+
+// M is a coarse sheet on the upper one of two wavy sheets: its chords run beyond the lower one,
+// where every point of M's faces must still be mapped to the upper one.
+void test_map_to_upper_sheet(const Shape& sheets,
+                             const std::function<bool(int)>& is_on_upper,
+                             int coarseness,
+                             int expected_wrong_by_tree)
+{
+  const internal::Reference_surface surface = surface_of(sheets);
+  Shape coarse = plane_grid(coarseness, coarseness, 0.8);
+  for(Vector_3& p : coarse.points)
+    p += Vector_3(0.1, 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
+  const Mesh_on_surface placed(coarse, surface, is_on_upper);
+  const internal::Patch patch = whole_patch(placed);
+  Random random(5);
+  int mapped = 0, tried = 0, wrong_by_tree = 0;
+  for(int i = 0; i < 4000; ++i)
+  {
+    internal::Planar_location location;
+    location.triangle = random.index(patch.polygons.number_of_faces());
+    location.barycentric = random.barycentric();
+    if(i % 5 == 0)
+      location.barycentric = Vector_3::Unit(i % 3);
+    if(i % 5 == 1)
+      location.barycentric = Vector_3(0.5, 0.5, 0);
+    Vector_3 point = Vector_3::Zero();
+    for(int k = 0; k < 3; ++k)
+      point += location.barycentric(k) *
+               patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
+    ++tried;
+    wrong_by_tree += !is_on_upper(surface.closest(point).face);
+    internal::Located_vertex result;
+    if(!internal::map_to_reference(patch, location, surface, result))
+      continue;
+    ++mapped;
+    RCO_CHECK(is_on_upper(result.on_reference.face));
+    RCO_CHECK_LESS(0., result.normal.z());
+    RCO_CHECK(result.position == result.on_reference.position);
+    check_surface_point(surface, result.on_reference);
+    // it is near: not further than the chords are from the wave
+    RCO_CHECK_LESS((result.position - point).norm(), 0.06);
+    if(i % 5 == 0)
+      RCO_CHECK_LESS_EQUAL((result.position - point).norm(), 1e-12);
+  }
+  RCO_CHECK_LESS(0.99 * tried, double(mapped));
+  RCO_CHECK_LESS(expected_wrong_by_tree, wrong_by_tree);
+}
+
+void test_map_to_reference_on_sheets()
+{
+  for(const double gap : {1e-2, 1e-4, 1e-7})
+    for(const int coarseness : {10, 5})
+    {
+      const Scope scope("map_to_reference on a double sheet of gap " + std::to_string(gap));
+      const Shape sheet = double_sheet(48, gap, 0.05);
+      test_map_to_upper_sheet(
+        sheet, [&](int f) { return is_upper(sheet, f); }, coarseness,
+        coarseness == 5 || gap < 1e-3 ? 500 : -1);
+    }
+  // two shelves of the same normal, which only the path along R distinguishes
+  const Scope scope("map_to_reference on two shelves");
+  Shape shelf = plane_grid(48, 48);
+  for(Vector_3& p : shelf.points)
+    p.z() = 0.05 * std::sin(4 * pi * p.x());
+  const int faces = int(shelf.faces.size());
+  const Shape shelves = joined(shelf, shelf, Vector_3(0, 0, -0.015));
+  test_map_to_upper_sheet(
+    shelves, [=](int f) { return f < faces; }, 5, 500);
+}
+
+// A flat M on a flat R is mapped to itself. Next to faces of R that have no area it may be off by
+// their edges' length.
+void test_map_to_reference_on_plane()
+{
+  const Scope scope("map_to_reference on a plane");
+  Shape fine = plane_grid(24, 24);
+  Random random(6);
+  Shape damaged = fine;
+  // collapsed edges: vertices that lie on their neighbours
+  for(const int v : {130, 205, 333, 410})
+    damaged.points[v] = damaged.points[v + 1];
+  for(const bool is_damaged : {false, true})
+  {
+    const Shape& shape = is_damaged ? damaged : fine;
+    int exact = 0;
+    const internal::Reference_surface surface = surface_of(shape);
+    const Mesh_on_surface placed(plane_grid(5, 5), surface, [](int) { return true; });
+    const internal::Patch patch = whole_patch(placed);
+    for(int i = 0; i < 2000; ++i)
+    {
+      internal::Planar_location location;
+      location.triangle = random.index(patch.polygons.number_of_faces());
+      location.barycentric = random.barycentric();
+      Vector_3 point = Vector_3::Zero();
+      for(int k = 0; k < 3; ++k)
+        point += location.barycentric(k) *
+                 patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
+      internal::Located_vertex result;
+      if(RCO_CHECK(internal::map_to_reference(patch, location, surface, result)))
+      {
+        const double off = (result.position - point).norm();
+        exact += off <= 1e-9;
+        RCO_CHECK_LESS_EQUAL(off, is_damaged ? 0.06 : 1e-9);
+      }
+    }
+    RCO_CHECK_LESS_EQUAL(is_damaged ? 1980 : 2000, exact);
+  }
+}
+
 int main()
 {
   test_injectivity_checks();
@@ -604,5 +758,7 @@ int main()
   test_conformal_maps();
   test_overlap();
   test_double_edge();
+  test_map_to_reference_on_sheets();
+  test_map_to_reference_on_plane();
   return report();
 }

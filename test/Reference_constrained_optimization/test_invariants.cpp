@@ -4,11 +4,14 @@
 
 // Accepted steps obey all invariants of a list, also additional ones.
 
+#include "Located_shape.h"
 #include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
 
-#include <CGAL/reference_constrained_optimize.h>
+#include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
+#include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 
 #include <cmath>
 #include <cstddef>
@@ -56,34 +59,16 @@ struct Mover_to
 };
 
 // a scrambled mesh on its surface, all of it one patch
-struct Scene
+struct Scene : Located_shape
 {
-  internal::Mesh_copy copy;
-  internal::Reference_surface surface;
-  internal::Element_set elements;
-  internal::Optimization_state state;
-  internal::Patch patch;
+  internal::Patch patch = whole_patch();
   internal::Patch_samples samples;
 
-  Scene(const Shape& start, const Shape& reference)
-    : copy(copy_of(start)),
-      surface(copy_of(reference)),
-      elements(RCO::Minimum_angle_energy(),
-               RCO::Energy_context(
-                 copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(), 1, 1, 1)),
-      state{copy.mesh, surface, elements, {}, {}}
+  Scene(const Shape& start, const Shape& reference) : Located_shape(start, reference)
   {
-    for(const char is_border : copy.mesh.is_border_vertex)
-      state.is_free.push_back(!is_border);
-    RCO::Result unused;
-    internal::locate_on_reference<CGAL::Sequential_tag>(copy.points, surface, state, unused);
-    std::vector<int> faces;
-    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
-      faces.push_back(f);
-    patch = internal::Patch_builder(copy.mesh).build(faces, state);
-    internal::Shape_bound guard;
-    guard.initialize<CGAL::Sequential_tag>(state, 0.1, true, internal::Drift_barrier(1));
-    samples = guard.gather(state, patch);
+    internal::Shape_bound shape_bound;
+    shape_bound.initialize<CGAL::Sequential_tag>(state, 0.1, true, internal::Drift_barrier(1));
+    samples = shape_bound.gather(state, patch);
   }
 
   // steps of Newton's method that are far too long

@@ -2,7 +2,7 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Densities and their derivatives, the factorization, the Newton system, the flip-free step, and planar optimization.
+// The factorization, the Newton system, the flip-free step, and Newton's method on problems in the plane.
 
 #include "checks.h"
 #include "deformations.h"
@@ -10,7 +10,6 @@
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_optimization.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/numerics/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/tangent_frame.h>
 
@@ -21,215 +20,10 @@
 
 using namespace rco_test;
 
-typedef Eigen::Matrix2d Matrix_2;
 typedef Eigen::Matrix4d Matrix_4;
 typedef Eigen::Vector4d Vector_4;
 
-Matrix_2 rotation(double angle)
-{
-  Matrix_2 r;
-  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  return r;
-}
-
-Matrix_2 with_singular_values(double s1, double s2, Random& random)
-{
-  const Matrix_2 u = rotation(random(0, 2 * pi)), v = rotation(random(0, 2 * pi));
-  return u * Vector_2(s1, s2).asDiagonal() * v;
-}
-
-// derivatives in the four entries, in column-major order, by central differences of fourth order
-template <typename Function>
-auto differences(const Matrix_2& J, double h, const Function& f)
-{
-  typedef decltype(f(J)) Value;
-  std::array<Value, 4> d;
-  for(int i = 0; i < 4; ++i)
-  {
-    const auto at = [&](double t) {
-      Matrix_2 K = J;
-      K.data()[i] += t;
-      return f(K);
-    };
-    d[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-  }
-  return d;
-}
-
 Vector_4 as_vector(const Matrix_2& m) { return Eigen::Map<const Vector_4>(m.data()); }
-
-Matrix_4 eigen_projection(const Matrix_4& h)
-{
-  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(h);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).asDiagonal() *
-         solver.eigenvectors().transpose();
-}
-
-// the part of a density that the concept asks for, to reach the general projection
-template <typename Density>
-struct Plain_density
-{
-  const Density& density;
-  double value(const Matrix_2& J) const { return density.value(J); }
-  Matrix_2 gradient(const Matrix_2& J) const { return density.gradient(J); }
-  Matrix_4 hessian(const Matrix_2& J) const { return density.hessian(J); }
-};
-
-template <typename Density>
-void test_derivatives_at(const Density& density, const Matrix_2& J, double h)
-{
-  const Vector_4 gradient = as_vector(density.gradient(J));
-  const Matrix_4 hessian = density.hessian(J);
-  const double scale = J.norm();
-
-  const auto slope = differences(J, h, [&](const Matrix_2& K) { return density.value(K); });
-  const auto bend =
-    differences(J, h, [&](const Matrix_2& K) { return as_vector(density.gradient(K)); });
-  // rounding of the differences: values are known to about 1e-15 of themselves
-  const double value_noise = 1e-14 * std::abs(density.value(J)) / h;
-  const double gradient_noise = 1e-14 * gradient.norm() / h;
-  const double first = 2e-6 * (gradient.norm() + 1e-3 * hessian.norm() * scale) + value_noise;
-  const double second = 2e-5 * (hessian.norm() + gradient.norm() / scale) + gradient_noise;
-  for(int i = 0; i < 4; ++i)
-  {
-    RCO_CHECK_NEAR(gradient(i), slope[i], first);
-    for(int j = 0; j < 4; ++j)
-      RCO_CHECK_NEAR(hessian(j, i), bend[i](j), second);
-  }
-  RCO_CHECK_LESS_EQUAL((hessian - hessian.transpose()).norm(), 1e-12 * hessian.norm());
-
-  Vector_4 g, g_plain;
-  Matrix_4 projected, projected_plain;
-  const double value = density.projected_derivatives(J, g, projected);
-  RCO_CHECK_NEAR(value, density.value(J), 1e-12 * std::abs(value));
-  RCO_CHECK_LESS_EQUAL((g - gradient).norm(), 1e-12 * gradient.norm());
-  const Matrix_4 expected = eigen_projection(hessian);
-  RCO_CHECK_LESS_EQUAL((projected - expected).norm(), 1e-10 * hessian.norm());
-  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(projected);
-  RCO_CHECK_LESS_EQUAL(-1e-12 * hessian.norm(), solver.eigenvalues().minCoeff());
-
-  const Plain_density<Density> plain{density};
-  const double plain_value = internal::projected_derivatives(plain, J, g_plain, projected_plain, 0);
-  RCO_CHECK_NEAR(plain_value, value, 1e-12 * std::abs(value));
-  RCO_CHECK_LESS_EQUAL((g_plain - gradient).norm(), 1e-12 * gradient.norm());
-  RCO_CHECK_LESS_EQUAL((projected_plain - expected).norm(), 1e-10 * hessian.norm());
-}
-
-template <typename Density>
-void test_general(const Density& density)
-{
-  Random random(1);
-  for(int i = 0; i < 300; ++i)
-  {
-    Matrix_2 J;
-    J << random(-2, 2), random(-2, 2), random(-2, 2), random(-2, 2);
-    const double value = density.value(J);
-    RCO_CHECK(std::isfinite(value));
-    const Matrix_2 turned = rotation(random(0, 7)) * J * rotation(random(0, 7));
-    RCO_CHECK_NEAR(density.value(turned), value, 1e-9 * std::abs(value));
-  }
-  // nothing becomes infinite: no area, no extent, inverted, large and small
-  const double sizes[] = {0, 1e-40, 1e-9, 1, 1e9};
-  for(const double a : sizes)
-    for(const double b : {-1., -1e-9, 0., 1e-9, 1.})
-    {
-      const Matrix_2 J = with_singular_values(a, a * b, random);
-      Vector_4 g;
-      Matrix_4 h;
-      RCO_CHECK(std::isfinite(density.value(J)));
-      RCO_CHECK(density.gradient(J).allFinite());
-      RCO_CHECK(density.hessian(J).allFinite());
-      RCO_CHECK(std::isfinite(density.projected_derivatives(J, g, h)));
-      RCO_CHECK(g.allFinite() && h.allFinite());
-    }
-  // inversion costs more than any valid shape
-  for(const double s : {0.5, 0.2, 0.01})
-    RCO_CHECK_LESS(density.value(with_singular_values(1, s, random)),
-                   density.value(with_singular_values(1, -s, random)));
-}
-
-// value, gradient and Hessian do not jump where J crosses `at`
-template <typename Density>
-void test_smooth_at(const Density& density, const Matrix_2& at, const Matrix_2& direction)
-{
-  const double h = 1e-9;
-  const Matrix_2 below = at - h * direction, above = at + h * direction;
-  const Matrix_2 g = density.gradient(at);
-  RCO_CHECK_NEAR(density.value(below), density.value(above), 4 * h * g.norm());
-  RCO_CHECK_LESS_EQUAL((density.gradient(below) - density.gradient(above)).norm(), 1e-5 * g.norm());
-  const Matrix_4 H = density.hessian(at);
-  RCO_CHECK_LESS_EQUAL((density.hessian(below) - density.hessian(above)).norm(), 1e-5 * H.norm());
-}
-
-void test_exponential_mips(double k)
-{
-  const Scope scope("Exponential_MIPS_density, k = " + std::to_string(k));
-  const RCO::Exponential_MIPS_density density(k);
-  RCO_CHECK_EQUAL(density.exponent_factor(), k);
-  Random random(2);
-  for(const double t : {1., 1 - 1e-7, 0.9, 0.5, 0.3, 0.2, 0.1, 0.04, 0.02, 0.01, 1e-4, 0., -0.01,
-                        -0.1, -0.5, -0.9, -1.})
-    for(int i = 0; i < 4; ++i)
-    {
-      const double size = random(0.2, 3);
-      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(t * size));
-      test_derivatives_at(density, with_singular_values(size, t * size, random), 1e-4 * size);
-    }
-  for(int i = 0; i < 20; ++i)
-  {
-    const double size = random(1e-3, 1e3);
-    const Matrix_2 similarity = with_singular_values(size, size, random);
-    RCO_CHECK_NEAR(density.value(similarity), std::exp(2 * k), 1e-12 * std::exp(2 * k));
-    RCO_CHECK_LESS_EQUAL(size * density.gradient(similarity).norm(), 1e-7 * std::exp(2 * k));
-    const double t = random(-1, 1);
-    const Matrix_2 J = with_singular_values(1, t, random);
-    RCO_CHECK_LESS_EQUAL(std::exp(2 * k) * (1 - 1e-12), density.value(J));
-    RCO_CHECK_NEAR(density.value(size * J), density.value(J), 1e-9 * density.value(J));
-    if(J.squaredNorm() / J.determinant() * k < 2 * k + 18 && J.determinant() > 0)
-      RCO_CHECK_NEAR(density.value(J), std::exp(k * J.squaredNorm() / J.determinant()),
-                     1e-9 * density.value(J));
-  }
-  // the cap: t + 1/t = (2k + 18) / k
-  const double ratio = (2 * k + 18) / k;
-  const double t = 2 / (ratio + std::sqrt(ratio * ratio - 4));
-  const Matrix_2 at = Vector_2(1, t).asDiagonal();
-  RCO_CHECK_NEAR(density.value(at), std::exp(2 * k + 18), 1e-9 * std::exp(2 * k + 18));
-  test_smooth_at(density, at, Vector_2(0, 1).asDiagonal());
-  // beyond the cap it grows, but slower than the exponential
-  const Matrix_2 beyond = Vector_2(1, 0.25 * t).asDiagonal();
-  RCO_CHECK_LESS(density.value(at), density.value(beyond));
-  RCO_CHECK_LESS(std::log(density.value(beyond)), k * (0.25 * t + 4 / t));
-  test_general(density);
-}
-
-void test_symmetric_dirichlet()
-{
-  const Scope scope("Symmetric_Dirichlet_density");
-  const RCO::Symmetric_Dirichlet_density density;
-  Random random(3);
-  for(const double s : {1., 1 - 1e-7, 0.8, 0.3, 0.1, 0.03, 0.015, 0.001, 0., -0.01, -0.1, -0.9})
-    for(const double size : {0.01, 0.5, 1., 2.})
-    {
-      // a mirror image is a ridge of this density, and the threshold a jump of third derivatives
-      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(s * size));
-      const double gap = (std::min)(std::abs(size - 0.02), std::abs(s * size - 0.02));
-      const double h =
-        1e-3 * (std::min)((std::max)(gap, 1e-4), (std::max)(std::abs(s * size), 0.02));
-      test_derivatives_at(density, with_singular_values(size, s * size, random), h);
-    }
-  for(int i = 0; i < 20; ++i)
-  {
-    RCO_CHECK_NEAR(density.value(rotation(i)), 4., 1e-12);
-    RCO_CHECK_LESS_EQUAL(density.gradient(rotation(i)).norm(), 1e-12);
-    Matrix_2 J = with_singular_values(random(0.1, 3), random(0.1, 3), random);
-    RCO_CHECK_NEAR(density.value(J), J.squaredNorm() + J.inverse().squaredNorm(),
-                   1e-9 * density.value(J));
-    RCO_CHECK_NEAR(density.value(J), density.value(J.inverse()), 1e-9 * density.value(J));
-  }
-  for(const double other : {0.5, 1., 3.})
-    test_smooth_at(density, Vector_2(other, 0.02).asDiagonal(), Vector_2(0, 1).asDiagonal());
-  test_general(density);
-}
 
 void test_time_of_collapse()
 {
@@ -601,30 +395,6 @@ void test_known_optimum(const Density& density, double best, const Matrix_2& map
   RCO_CHECK_NEAR(outcome.final_energy, energy, 1e-6 * energy);
 }
 
-void test_drift_barrier()
-{
-  const Scope scope("drift barrier");
-  const internal::Drift_barrier barrier(3);
-  for(const double bound : {0.01, 1., 7.})
-  {
-    double last = 0;
-    for(double part = 0.01; part < 4; part += 0.0371)
-    {
-      const double r = part * bound, h = 1e-5 * bound;
-      const internal::Drift_barrier::Derivatives d = barrier.derivatives(r, bound),
-                                                 low = barrier.derivatives(r - h, bound),
-                                                 high = barrier.derivatives(r + h, bound);
-      RCO_CHECK_NEAR(d.value, barrier.value(r, bound), 1e-12 * d.value);
-      RCO_CHECK_EQUAL(d.value > 0, internal::Drift_barrier::is_active(r, bound));
-      RCO_CHECK_NEAR(d.first, (high.value - low.value) / (2 * h), 1e-4 * (d.first + 1 / bound));
-      RCO_CHECK_NEAR(d.second, (high.first - low.first) / (2 * h),
-                     1e-2 * (d.second + 1 / (bound * bound)));
-      RCO_CHECK(d.value >= last && d.second >= 0);
-      last = d.value;
-    }
-  }
-}
-
 // samples all over a patch; the barrier is active at those of edges and faces and at some of R's vertices
 internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& random)
 {
@@ -821,58 +591,14 @@ void test_planar_optimizer(const Density& density, double best, const std::strin
   RCO_CHECK(u == before);
 }
 
-void test_surface_metric()
-{
-  const Scope scope("surface metric");
-  Random random(9);
-  for(int i = 0; i < 500; ++i)
-  {
-    const Vector_3 a = random.in_cube(1), b = random.in_cube(1), c = random.in_cube(1);
-    const Vector_3 n = (b - a).cross(c - a);
-    const Vector_3 up = random.in_cube(1);
-    const Matrix_2 shape = internal::signed_shape(a, b, c, up);
-    // lengths and angle are kept, and so is the area but for its sign
-    RCO_CHECK_NEAR(shape.col(0).norm(), (b - a).norm(), 1e-12);
-    RCO_CHECK_NEAR(shape.col(1).norm(), (c - a).norm(), 1e-12);
-    RCO_CHECK_NEAR(shape.col(0).dot(shape.col(1)), (b - a).dot(c - a), 1e-12);
-    RCO_CHECK_NEAR(std::abs(shape.determinant()), n.norm(), 1e-12);
-    RCO_CHECK_EQUAL(shape.determinant() > 0, n.dot(up) > 0);
-    const Matrix_2 turned = internal::signed_shape(a, b, c, -up);
-    RCO_CHECK_NEAR(turned.determinant(), -shape.determinant(), 1e-12);
-
-    // a flattening that distorts a little
-    const Matrix_2 shape_up = internal::signed_shape(a, b, c, n);
-    const Matrix_2 plane = with_singular_values(random(0.5, 2), random(0.5, 2), random) * shape_up;
-    const Matrix_2 metric = internal::surface_metric(plane, shape_up, 3);
-    if(shape_up.determinant() > 0.02 * shape_up.squaredNorm() &&
-       plane.determinant() > 0.02 * plane.squaredNorm())
-      RCO_CHECK_LESS_EQUAL((metric * plane - shape_up).norm(), 1e-9);
-    // where one side is reversed there is no metric
-    RCO_CHECK(internal::surface_metric(plane, -shape_up * Vector_2(1, -1).asDiagonal(), 3) ==
-              3 * Matrix_2::Identity());
-  }
-  const Vector_3 o(0, 0, 0), x(1, 0, 0), up(0, 0, 1);
-  const Matrix_2 flat = internal::signed_shape(o, x, 2 * x, up);
-  RCO_CHECK(flat.allFinite() && flat.determinant() == 0);
-  const Matrix_2 point = internal::signed_shape(o, o, x, up);
-  RCO_CHECK(point.allFinite() && point.determinant() == 0);
-  RCO_CHECK(internal::surface_metric(Matrix_2::Identity(), flat, 2) == 2 * Matrix_2::Identity());
-  RCO_CHECK(internal::surface_metric(flat, Matrix_2::Identity(), 2) == 2 * Matrix_2::Identity());
-}
-
 int main()
 {
-  for(const double k : {0.5, 1., 4.})
-    test_exponential_mips(k);
-  test_symmetric_dirichlet();
   test_time_of_collapse();
   test_factorization();
   test_newton_system();
-  test_drift_barrier();
   test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
   test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.),
                         "exponential MIPS, k = 0.5");
   test_planar_optimizer(RCO::Symmetric_Dirichlet_density(), 4, "symmetric Dirichlet");
-  test_surface_metric();
   return report();
 }

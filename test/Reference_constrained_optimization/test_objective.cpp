@@ -2,216 +2,338 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Energies are sums of terms: elements with weights, stencils of vertices anywhere, sums of energies.
+// Densities and stencils, their derivatives, and the barriers.
 
+#include "Straight_rows.h"
 #include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
 
-#include <CGAL/reference_constrained_optimize.h>
+#include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Angle_barrier_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/Stencil_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/objective/drift_barrier.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <Eigen/Dense>
 
 using namespace rco_test;
 
-// optimizes a mesh on itself as reference, and checks properties that hold for every energy
-template <typename Energy, typename NamedParameters>
-Shape optimized(const Shape& start,
-                const Shape& surface,
-                const Energy& energy,
-                const NamedParameters& np,
-                RCO::Result* result = nullptr)
+typedef Eigen::Matrix4d Matrix_4;
+typedef Eigen::Vector4d Vector_4;
+
+Vector_4 as_vector(const Matrix_2& m) { return Eigen::Map<const Vector_4>(m.data()); }
+
+// derivatives in the four entries, in column-major order, by central differences of fourth order
+template <typename Function>
+auto differences(const Matrix_2& J, double h, const Function& f)
 {
-  Mesh mesh = make_mesh<Mesh>(start), reference = make_mesh<Mesh>(surface);
-  const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, energy, np);
-  RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
-  RCO_CHECK_LESS_EQUAL(r.number_of_flips, r.initial_number_of_flips);
-  RCO_CHECK_LESS_EQUAL(r.number_of_fold_edges, r.initial_number_of_fold_edges);
-  if(result)
-    *result = r;
-  return make_shape(mesh);
+  typedef decltype(f(J)) Value;
+  std::array<Value, 4> d;
+  for(int i = 0; i < 4; ++i)
+  {
+    const auto at = [&](double t) {
+      Matrix_2 K = J;
+      K.data()[i] += t;
+      return f(K);
+    };
+    d[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+  }
+  return d;
 }
 
-// A vertex with a large weight moves to the point of R that is closest to its target; with a smaller one it
-// ends in between. Weight 0 has no effect.
-void test_attraction()
+Matrix_4 eigen_projection(const Matrix_4& h)
 {
-  Scope scope("attraction");
-  const int n = 12;
-  const Shape s = plane_grid(n, n);
-  const int v = nearest(s, Vector_3(0.5, 0.5, 0));
-  const Vector_3 target = s.points[v] + Vector_3(0.6 / n, -0.3 / n, 0.5);
-  const auto pulled = [&](double weight) {
-    const RCO::Attraction_energy attraction({{std::size_t(v), target}});
-    return optimized(s, s, RCO::sum(1, RCO::Minimum_angle_energy(), weight, attraction),
-                     params::energy_tolerance(1e-6).use_finishing_stage(false));
-  };
-  const Shape still = pulled(0);
-  RCO_CHECK(same_bits(still, optimized(s, s, RCO::Minimum_angle_energy(),
-                                       params::energy_tolerance(1e-6).use_finishing_stage(false))));
-  const auto distance = [&](const Shape& shape) {
-    return (shape.points[v] - onto_plane(target)).norm() * n;
-  };
-  double last = distance(still);
-  RCO_CHECK_LESS(0.3, last);
-  for(const double weight : {10., 300., 1e5})
-  {
-    const Shape shape = pulled(weight);
-    for(const Vector_3& p : shape.points)
-      RCO_CHECK_EQUAL(p.z(), 0.);
-    RCO_CHECK_LESS(distance(shape), last);
-    last = distance(shape);
-  }
-  RCO_CHECK_LESS(last, 0.01);
-
-  const Shape sphere = icosphere(3);
-  const int pole = nearest(sphere, Vector_3(0, 0, 1));
-  const Vector_3 off = Vector_3(0.05, 0.03, 1).normalized();
-  const RCO::Attraction_energy attraction({{std::size_t(pole), 1.5 * off}});
-  RCO::Result result;
-  const Shape moved =
-    optimized(sphere, sphere, RCO::sum(1, RCO::Minimum_angle_energy(), 1e5, attraction),
-              params::energy_tolerance(1e-6), &result);
-  const internal::Reference_surface surface(copy_of(sphere));
-  const Vector_3 closest = surface.closest(1.5 * off).position;
-  RCO_CHECK_LESS(0.04, (sphere.points[pole] - closest).norm());
-  RCO_CHECK_LESS((moved.points[pole] - closest).norm(), 0.006);
+  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(h);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).asDiagonal() *
+         solver.eigenvectors().transpose();
 }
 
-// Stencils of six vertices that are zero for collinear ones: the sum of squared second differences along a
-// row. Derivatives are computed by the library.
-struct Straight_rows
+// the part of a density that the concept asks for, to reach the general projection
+template <typename Density>
+struct Plain_density
 {
-  static constexpr int stencil_size = 6;
-  int columns, rows; // of vertices
-
-  template <typename Context>
-  void append_stencils(const Context&, std::vector<RCO::Energy_stencil<6>>& stencils) const
-  {
-    for(int j = 0; j < rows; ++j)
-      for(int i = 0; i + 5 < columns; ++i)
-      {
-        RCO::Energy_stencil<6> stencil;
-        for(int k = 0; k < 6; ++k)
-          stencil.vertices[k] = std::size_t(j * columns + i + k);
-        stencils.push_back(stencil);
-      }
-  }
-
-  double value(std::size_t, const std::array<Eigen::Vector3d, 6>& p) const
-  {
-    double sum = 0;
-    for(int k = 1; k < 5; ++k)
-      sum += (p[k - 1] - 2 * p[k] + p[k + 1]).squaredNorm();
-    return double(columns * columns) * sum;
-  }
+  const Density& density;
+  double value(const Matrix_2& J) const { return density.value(J); }
+  Matrix_2 gradient(const Matrix_2& J) const { return density.gradient(J); }
+  Matrix_4 hessian(const Matrix_2& J) const { return density.hessian(J); }
 };
 
-// Rows of a scrambled grid become straight; the sum decreases although stencils reach across patches.
-void test_wide_stencils()
+template <typename Density>
+void test_derivatives_at(const Density& density, const Matrix_2& J, double h)
 {
-  Scope scope("stencils of six vertices");
-  const int n = 24;
-  const Shape regular = plane_grid(n, n);
-  const Shape start = scrambled(regular, 0.25, 3, onto_plane);
-  const Straight_rows rows{n + 1, n + 1};
-  const auto bend = [&](const Shape& s) {
-    std::vector<RCO::Energy_stencil<6>> stencils;
-    rows.append_stencils(0, stencils);
-    double sum = 0;
-    for(const RCO::Energy_stencil<6>& stencil : stencils)
-    {
-      std::array<Eigen::Vector3d, 6> p;
-      for(int k = 0; k < 6; ++k)
-        p[k] = s.points[stencil.vertices[k]];
-      sum += rows.value(0, p);
-    }
-    return sum;
-  };
-  // the first summand has its minimum at the input
-  const RCO::Compatible_remeshing_energy stay(make_mesh<Mesh>(start));
-  for(const int size : {0, 60}) // many small patches, too
+  const Vector_4 gradient = as_vector(density.gradient(J));
+  const Matrix_4 hessian = density.hessian(J);
+  const double scale = J.norm();
+
+  const auto slope = differences(J, h, [&](const Matrix_2& K) { return density.value(K); });
+  const auto bend =
+    differences(J, h, [&](const Matrix_2& K) { return as_vector(density.gradient(K)); });
+  // rounding of the differences: values are known to about 1e-15 of themselves
+  const double value_noise = 1e-14 * std::abs(density.value(J)) / h;
+  const double gradient_noise = 1e-14 * gradient.norm() / h;
+  const double first = 2e-6 * (gradient.norm() + 1e-3 * hessian.norm() * scale) + value_noise;
+  const double second = 2e-5 * (hessian.norm() + gradient.norm() / scale) + gradient_noise;
+  for(int i = 0; i < 4; ++i)
   {
-    const Shape straight = optimized(start, regular, RCO::sum(1, stay, 10, rows),
-                                     params::maximum_patch_size(size).random_seed(1));
-    RCO_CHECK_LESS(bend(straight), 0.5 * bend(start));
+    RCO_CHECK_NEAR(gradient(i), slope[i], first);
+    for(int j = 0; j < 4; ++j)
+      RCO_CHECK_NEAR(hessian(j, i), bend[i](j), second);
+  }
+  RCO_CHECK_LESS_EQUAL((hessian - hessian.transpose()).norm(), 1e-12 * hessian.norm());
+
+  Vector_4 g, g_plain;
+  Matrix_4 projected, projected_plain;
+  const double value = density.projected_derivatives(J, g, projected);
+  RCO_CHECK_NEAR(value, density.value(J), 1e-12 * std::abs(value));
+  RCO_CHECK_LESS_EQUAL((g - gradient).norm(), 1e-12 * gradient.norm());
+  const Matrix_4 expected = eigen_projection(hessian);
+  RCO_CHECK_LESS_EQUAL((projected - expected).norm(), 1e-10 * hessian.norm());
+  const Eigen::SelfAdjointEigenSolver<Matrix_4> solver(projected);
+  RCO_CHECK_LESS_EQUAL(-1e-12 * hessian.norm(), solver.eigenvalues().minCoeff());
+
+  const Plain_density<Density> plain{density};
+  const double plain_value = internal::projected_derivatives(plain, J, g_plain, projected_plain, 0);
+  RCO_CHECK_NEAR(plain_value, value, 1e-12 * std::abs(value));
+  RCO_CHECK_LESS_EQUAL((g_plain - gradient).norm(), 1e-12 * gradient.norm());
+  RCO_CHECK_LESS_EQUAL((projected_plain - expected).norm(), 1e-10 * hessian.norm());
+}
+
+template <typename Density>
+void test_general(const Density& density)
+{
+  Random random(1);
+  for(int i = 0; i < 300; ++i)
+  {
+    Matrix_2 J;
+    J << random(-2, 2), random(-2, 2), random(-2, 2), random(-2, 2);
+    const double value = density.value(J);
+    RCO_CHECK(std::isfinite(value));
+    const Matrix_2 turned = rotation(random(0, 7)) * J * rotation(random(0, 7));
+    RCO_CHECK_NEAR(density.value(turned), value, 1e-9 * std::abs(value));
+  }
+  // nothing becomes infinite: no area, no extent, inverted, large and small
+  const double sizes[] = {0, 1e-40, 1e-9, 1, 1e9};
+  for(const double a : sizes)
+    for(const double b : {-1., -1e-9, 0., 1e-9, 1.})
+    {
+      const Matrix_2 J = with_singular_values(a, a * b, random);
+      Vector_4 g;
+      Matrix_4 h;
+      RCO_CHECK(std::isfinite(density.value(J)));
+      RCO_CHECK(density.gradient(J).allFinite());
+      RCO_CHECK(density.hessian(J).allFinite());
+      RCO_CHECK(std::isfinite(density.projected_derivatives(J, g, h)));
+      RCO_CHECK(g.allFinite() && h.allFinite());
+    }
+  // inversion costs more than any valid shape
+  for(const double s : {0.5, 0.2, 0.01})
+    RCO_CHECK_LESS(density.value(with_singular_values(1, s, random)),
+                   density.value(with_singular_values(1, -s, random)));
+}
+
+// value, gradient and Hessian do not jump where J crosses `at`
+template <typename Density>
+void test_smooth_at(const Density& density, const Matrix_2& at, const Matrix_2& direction)
+{
+  const double h = 1e-9;
+  const Matrix_2 below = at - h * direction, above = at + h * direction;
+  const Matrix_2 g = density.gradient(at);
+  RCO_CHECK_NEAR(density.value(below), density.value(above), 4 * h * g.norm());
+  RCO_CHECK_LESS_EQUAL((density.gradient(below) - density.gradient(above)).norm(), 1e-5 * g.norm());
+  const Matrix_4 H = density.hessian(at);
+  RCO_CHECK_LESS_EQUAL((density.hessian(below) - density.hessian(above)).norm(), 1e-5 * H.norm());
+}
+
+void test_exponential_mips(double k)
+{
+  const Scope scope("Exponential_MIPS_density, k = " + std::to_string(k));
+  const RCO::Exponential_MIPS_density density(k);
+  RCO_CHECK_EQUAL(density.exponent_factor(), k);
+  Random random(2);
+  for(const double t : {1., 1 - 1e-7, 0.9, 0.5, 0.3, 0.2, 0.1, 0.04, 0.02, 0.01, 1e-4, 0., -0.01,
+                        -0.1, -0.5, -0.9, -1.})
+    for(int i = 0; i < 4; ++i)
+    {
+      const double size = random(0.2, 3);
+      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(t * size));
+      test_derivatives_at(density, with_singular_values(size, t * size, random), 1e-4 * size);
+    }
+  for(int i = 0; i < 20; ++i)
+  {
+    const double size = random(1e-3, 1e3);
+    const Matrix_2 similarity = with_singular_values(size, size, random);
+    RCO_CHECK_NEAR(density.value(similarity), std::exp(2 * k), 1e-12 * std::exp(2 * k));
+    RCO_CHECK_LESS_EQUAL(size * density.gradient(similarity).norm(), 1e-7 * std::exp(2 * k));
+    const double t = random(-1, 1);
+    const Matrix_2 J = with_singular_values(1, t, random);
+    RCO_CHECK_LESS_EQUAL(std::exp(2 * k) * (1 - 1e-12), density.value(J));
+    RCO_CHECK_NEAR(density.value(size * J), density.value(J), 1e-9 * density.value(J));
+    if(J.squaredNorm() / J.determinant() * k < 2 * k + 18 && J.determinant() > 0)
+      RCO_CHECK_NEAR(density.value(J), std::exp(k * J.squaredNorm() / J.determinant()),
+                     1e-9 * density.value(J));
+  }
+  // the cap: t + 1/t = (2k + 18) / k
+  const double ratio = (2 * k + 18) / k;
+  const double t = 2 / (ratio + std::sqrt(ratio * ratio - 4));
+  const Matrix_2 at = Vector_2(1, t).asDiagonal();
+  RCO_CHECK_NEAR(density.value(at), std::exp(2 * k + 18), 1e-9 * std::exp(2 * k + 18));
+  test_smooth_at(density, at, Vector_2(0, 1).asDiagonal());
+  // beyond the cap it grows, but slower than the exponential
+  const Matrix_2 beyond = Vector_2(1, 0.25 * t).asDiagonal();
+  RCO_CHECK_LESS(density.value(at), density.value(beyond));
+  RCO_CHECK_LESS(std::log(density.value(beyond)), k * (0.25 * t + 4 / t));
+  test_general(density);
+}
+
+void test_symmetric_dirichlet()
+{
+  const Scope scope("Symmetric_Dirichlet_density");
+  const RCO::Symmetric_Dirichlet_density density;
+  Random random(3);
+  for(const double s : {1., 1 - 1e-7, 0.8, 0.3, 0.1, 0.03, 0.015, 0.001, 0., -0.01, -0.1, -0.9})
+    for(const double size : {0.01, 0.5, 1., 2.})
+    {
+      // a mirror image is a ridge of this density, and the threshold a jump of third derivatives
+      const Scope at("singular values " + std::to_string(size) + ", " + std::to_string(s * size));
+      const double gap = (std::min)(std::abs(size - 0.02), std::abs(s * size - 0.02));
+      const double h =
+        1e-3 * (std::min)((std::max)(gap, 1e-4), (std::max)(std::abs(s * size), 0.02));
+      test_derivatives_at(density, with_singular_values(size, s * size, random), h);
+    }
+  for(int i = 0; i < 20; ++i)
+  {
+    RCO_CHECK_NEAR(density.value(rotation(i)), 4., 1e-12);
+    RCO_CHECK_LESS_EQUAL(density.gradient(rotation(i)).norm(), 1e-12);
+    Matrix_2 J = with_singular_values(random(0.1, 3), random(0.1, 3), random);
+    RCO_CHECK_NEAR(density.value(J), J.squaredNorm() + J.inverse().squaredNorm(),
+                   1e-9 * density.value(J));
+    RCO_CHECK_NEAR(density.value(J), density.value(J.inverse()), 1e-9 * density.value(J));
+  }
+  for(const double other : {0.5, 1., 3.})
+    test_smooth_at(density, Vector_2(other, 0.02).asDiagonal(), Vector_2(0, 1).asDiagonal());
+  test_general(density);
+}
+
+void test_drift_barrier()
+{
+  const Scope scope("drift barrier");
+  const internal::Drift_barrier barrier(3);
+  for(const double bound : {0.01, 1., 7.})
+  {
+    double last = 0;
+    for(double part = 0.01; part < 4; part += 0.0371)
+    {
+      const double r = part * bound, h = 1e-5 * bound;
+      const internal::Drift_barrier::Derivatives d = barrier.derivatives(r, bound),
+                                                 low = barrier.derivatives(r - h, bound),
+                                                 high = barrier.derivatives(r + h, bound);
+      RCO_CHECK_NEAR(d.value, barrier.value(r, bound), 1e-12 * d.value);
+      RCO_CHECK_EQUAL(d.value > 0, internal::Drift_barrier::is_active(r, bound));
+      RCO_CHECK_NEAR(d.first, (high.value - low.value) / (2 * h), 1e-4 * (d.first + 1 / bound));
+      RCO_CHECK_NEAR(d.second, (high.first - low.first) / (2 * h),
+                     1e-2 * (d.second + 1 / (bound * bound)));
+      RCO_CHECK(d.value >= last && d.second >= 0);
+      last = d.value;
+    }
   }
 }
 
-// a summand adds its energy; its weight is equivalent to the weight of elements
-struct Weighted_angle_energy : RCO::Minimum_angle_energy
+template <typename Density>
+void test_barrier(const std::string& name, const Density& density, double steepness)
 {
-  double weight;
-  explicit Weighted_angle_energy(double w) : weight(w) {}
-  template <typename Context>
-  void append_elements(const Context& context,
-                       std::size_t f,
-                       std::vector<RCO::Energy_element>& elements) const
+  const Scope scope("angle barrier, " + name + ", " + std::to_string(steepness) + " per degree");
+  const double unit = 6 / steepness; // degrees
+  const auto densities = internal::make_element_densities(std::make_tuple(density));
+  typedef internal::Angle_barrier_density<std::decay_t<decltype(densities)>> Barrier;
+  internal::Element_set::Element element;
+  element.has_criterion = true;
+  Eigen::Matrix2d equilateral;
+  equilateral << 1, 0.5, 0, std::sqrt(0.75);
+  Random random(7);
+  int near = 0, capped = 0, plain_again = 0;
+  for(int i = 0; i < 3000; ++i)
   {
-    RCO_CHECK(context.point_map()[context.vertex_descriptor_of(0)] ==
-              context.mesh().point(*context.mesh().vertices_begin()));
-    RCO_CHECK(context.face_descriptor_of(f) == typename Mesh::Face_index(unsigned(f)));
-    RCO::Minimum_angle_energy::append_elements(context, f, elements);
-    elements.back().weight = weight;
+    Eigen::Matrix2d J;
+    do
+      J << random(-2, 2), random(-2, 2), random(-2, 2), random(-2, 2);
+    while(!(J.determinant() > 0.05 * J.squaredNorm()));
+    const Eigen::Matrix2d shape = J * equilateral;
+    const Vector_3 corners[3] = {Vector_3::Zero(), Vector_3(shape(0, 0), shape(1, 0), 0),
+                                 Vector_3(shape(0, 1), shape(1, 1), 0)};
+    const double angle = smallest_angle(corners[0], corners[1], corners[2]);
+    const double target = (std::max)(1., angle + unit * random(-6, 4));
+    const Barrier barrier(densities, target, steepness);
+    RCO_CHECK_EQUAL(barrier.target(), target);
+
+    Eigen::Vector4d gradient, plain_gradient;
+    Eigen::Matrix4d hessian, plain_hessian;
+    const double value = barrier.projected_derivatives(element, J, gradient, hessian);
+    const double plain_value =
+      internal::projected_derivatives(density, J, plain_gradient, plain_hessian, 0);
+    RCO_CHECK_NEAR(barrier.value(element, J), value, 1e-12 * value);
+    RCO_CHECK_LESS_EQUAL(plain_value, value);
+    element.has_criterion = false;
+    RCO_CHECK_EQUAL(barrier.value(element, J), density.value(J));
+    element.has_criterion = true;
+    if(angle > target + 20 / steepness + 0.01)
+    {
+      RCO_CHECK_EQUAL(value, plain_value);
+      RCO_CHECK_EQUAL(barrier.value(element, J), density.value(J));
+      RCO_CHECK(gradient == plain_gradient && hessian == plain_hessian);
+      ++plain_again;
+      continue;
+    }
+    // what an angle adds, anew
+    double added = 0;
+    bool near_the_end = false; // where it stops and differences see the jump
+    for(int k = 0; k < 3; ++k)
+    {
+      const Vector_3 u = corners[(k + 1) % 3] - corners[k], w = corners[(k + 2) % 3] - corners[k];
+      const double x = steepness * (target - std::atan2(u.cross(w).norm(), u.dot(w)) * 180 / pi);
+      const double h = x - 6;
+      if(x > -20)
+        added += x < 6 ? std::exp(x) : std::exp(6.) * (1 + h + 0.5 * h * h);
+      near_the_end = near_the_end || std::abs(x + 20) < 0.1;
+    }
+    RCO_CHECK_NEAR(value - plain_value, added * density.value(Eigen::Matrix2d::Identity()),
+                   1e-9 * value);
+    capped += angle < target - unit;
+    near += std::abs(angle - target) < unit;
+
+    const Eigen::Matrix4d lifted = hessian + 1e-10 * hessian.norm() * Eigen::Matrix4d::Identity();
+    RCO_CHECK(Eigen::LLT<Eigen::Matrix4d>(lifted).info() == Eigen::Success);
+    RCO_CHECK_LESS_EQUAL((hessian - hessian.transpose()).norm(), 1e-12 * hessian.norm());
+    if(near_the_end)
+      continue;
+    const double h = 1e-6 * unit * J.norm();
+    for(int k = 0; k < 4; ++k)
+    {
+      const auto at = [&](double t) {
+        Eigen::Matrix2d K = J;
+        K.data()[k] += t;
+        return barrier.value(element, K);
+      };
+      const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+      RCO_CHECK_NEAR(gradient(k), slope, 1e-5 * gradient.norm() + 1e-14 * value / h);
+    }
   }
-};
+  RCO_CHECK_LESS(100, near);
+  RCO_CHECK_LESS(100, capped);
+  RCO_CHECK_LESS(100, plain_again);
 
-void test_sums()
-{
-  Scope scope("sums");
-  const Shape s = scrambled(icosphere(3), 0.3, 2, onto_sphere), sphere = icosphere(3);
-  const auto np = params::random_seed(2);
-  RCO::Result once, weighted, summed, nested;
-  const Shape a = optimized(s, sphere, RCO::Minimum_angle_energy(), np, &once);
-  // powers of two change nothing but the energy's unit
-  const Shape b = optimized(s, sphere, Weighted_angle_energy(4), np, &weighted);
-  const Shape c = optimized(s, sphere, RCO::sum(4, RCO::Minimum_angle_energy()), np, &summed);
-  RCO_CHECK(same_bits(a, b) && same_bits(a, c));
-  RCO_CHECK_EQUAL(weighted.final_energy, 4 * once.final_energy);
-  RCO_CHECK_EQUAL(summed.final_energy, 4 * once.final_energy);
-
-  // a second term with elements, of another density
-  const RCO::Compatible_remeshing_energy isometry(make_mesh<Mesh>(sphere));
-  const auto sum = RCO::sum(2, RCO::Minimum_angle_energy(), 0.5, RCO::sum(2, isometry));
-  optimized(s, sphere, sum, np, &nested);
-  RCO::Result angle, map;
-  optimized(s, sphere, RCO::Minimum_angle_energy(), params::number_of_iterations(0), &angle);
-  optimized(s, sphere, isometry, params::number_of_iterations(0), &map);
-  // the mean is over the elements of both
-  RCO_CHECK_NEAR(nested.initial_energy, 0.5 * (2 * angle.initial_energy + map.initial_energy),
-                 1e-9 * nested.initial_energy);
-  RCO_CHECK_LESS(nested.final_energy, nested.initial_energy);
-}
-
-void test_errors()
-{
-  Scope scope("errors");
-  const Shape s = icosphere(1);
-  const auto run = [&](const auto& energy) {
-    Mesh mesh = make_mesh<Mesh>(s);
-    try
+  // inverted, or without extent
+  const Barrier barrier(densities, 30, steepness);
+  for(const double s : {-1., -1e-9, 0., 1e-9, 1e9})
+    for(const double t : {0., 1e-40, 1.})
     {
-      CGAL::reference_constrained_optimize(mesh, mesh, energy);
+      const Eigen::Matrix2d J = Vector_2(t, s * t).asDiagonal();
+      Eigen::Vector4d gradient;
+      Eigen::Matrix4d hessian;
+      RCO_CHECK(std::isfinite(barrier.value(element, J)));
+      RCO_CHECK(std::isfinite(barrier.projected_derivatives(element, J, gradient, hessian)));
     }
-    catch(...)
-    {
-      RCO_CHECK(same_bits(make_shape(mesh), s));
-      throw;
-    }
-  };
-  const RCO::Minimum_angle_energy angle;
-  typedef RCO::Attraction_energy Attraction;
-  RCO_CHECK_THROWS(RCO::sum(-1, angle), RCO::Invalid_input, "weight");
-  RCO_CHECK_THROWS(Attraction({{0, Vector_3(0, NAN, 0)}}), RCO::Invalid_input, "target 0");
-  RCO_CHECK_THROWS(run(RCO::sum(1, angle, 1, Attraction({{1000, Vector_3(0, 0, 0)}}))),
-                   RCO::Invalid_input, "vertex 1000");
-  RCO_CHECK_THROWS(run(Attraction({{0, Vector_3(0, 0, 0)}})), RCO::Invalid_input, "no element");
-  RCO_CHECK_THROWS(run(Weighted_angle_energy(0)), RCO::Invalid_input, "weight");
+  RCO_CHECK_LESS(barrier.value(element, Vector_2(1, 0.3).asDiagonal()),
+                 barrier.value(element, Vector_2(1, -0.3).asDiagonal()));
 }
 
 // The derivatives of a stencil are compared with differences of its value, along the frames.
@@ -256,10 +378,15 @@ void test_stencil_derivatives()
 
 int main()
 {
+  for(const double k : {0.5, 1., 4.})
+    test_exponential_mips(k);
+  test_symmetric_dirichlet();
+  test_drift_barrier();
+  for(const double steepness : {6, 12, 30})
+  {
+    test_barrier("exponential MIPS", RCO::Exponential_MIPS_density(1), steepness);
+    test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density(), steepness);
+  }
   test_stencil_derivatives();
-  test_sums();
-  test_attraction();
-  test_wide_stencils();
-  test_errors();
   return report();
 }

@@ -2,22 +2,24 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Closest points of the reference: in a triangle, globally, and locally on the same sheet.
+// The reference: closest points in a triangle, globally, and locally on the same sheet; faces in a direction,
+// lines, features, and local bounds.
 
 #include "checks.h"
-#include "deformations.h"
+#include "meshes.h"
+#include "surfaces.h"
 
-#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
-#include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
+#include <CGAL/Reference_constrained_optimization/detect_features.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/Polyline_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/face_in_direction.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/local_bounds.h>
 
 #include <limits>
+#include <set>
 
 using namespace rco_test;
-
-internal::Reference_surface surface_of(const Shape& shape)
-{
-  return internal::Reference_surface(copy_of(shape));
-}
+using internal::Polyline_point;
+using internal::Polyline_set;
 
 // q is the closest point of a convex body to p if no corner w of the body is on p's side of the
 // plane through q that is normal to p - q
@@ -122,15 +124,6 @@ double brute_force_distance(const internal::Reference_surface& surface, const Ve
   return best;
 }
 
-void check_surface_point(const internal::Reference_surface& surface,
-                         const internal::Surface_point& s)
-{
-  RCO_CHECK(s.face >= 0 && s.face < surface.mesh().number_of_faces());
-  RCO_CHECK(s.barycentric.minCoeff() >= 0);
-  RCO_CHECK_NEAR(s.barycentric.sum(), 1., 1e-14);
-  RCO_CHECK_LESS_EQUAL((surface.point(s.face, s.barycentric).position - s.position).norm(), 1e-15);
-}
-
 void test_closest(const Shape& shape, const std::string& name)
 {
   const Scope scope("closest on " + name);
@@ -232,15 +225,6 @@ void test_descend_on_convex_surfaces()
   }
 }
 
-bool is_upper(const Shape& sheet, int f)
-{
-  const int half = int(sheet.points.size()) / 2;
-  for(const int v : sheet.faces[f])
-    if(v >= half)
-      return false;
-  return true;
-}
-
 bool is_at_rim(const Vector_3& p)
 {
   return p.head<2>().minCoeff() < 0.06 || p.head<2>().maxCoeff() > 0.94;
@@ -278,158 +262,6 @@ void test_descend_on_double_sheet()
       RCO_CHECK_LESS(surface.normal(t).z(), 0.);
     }
     RCO_CHECK(wrong_by_tree > 500); // what a global query does here
-  }
-}
-
-struct Mesh_on_surface
-{
-  Indexed_mesh mesh;
-  internal::Element_set elements;
-  internal::Optimization_state state;
-
-  Mesh_on_surface(const Shape& shape,
-                  const internal::Reference_surface& surface,
-                  const std::function<bool(int)>& face_is_allowed)
-    : mesh(indexed(shape)),
-      elements(
-        RCO::Minimum_angle_energy(),
-        RCO::Energy_context(mesh.face_begin, mesh.corner_vertex, shape.points.size(), 1, 1, 1)),
-      state{mesh, surface, elements, {}, {}}
-  {
-    for(std::size_t v = 0; v < shape.points.size(); ++v)
-    {
-      internal::Located_vertex placed;
-      double best = std::numeric_limits<double>::infinity();
-      for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
-      {
-        const internal::Surface_point s = surface.closest_in_face(shape.points[v], f);
-        if(face_is_allowed(f) && (s.position - shape.points[v]).norm() < best)
-        {
-          best = (s.position - shape.points[v]).norm();
-          placed.on_reference = s;
-        }
-      }
-      placed.position = placed.on_reference.position;
-      placed.normal = surface.normal(placed.on_reference);
-      state.vertices.push_back(placed);
-      state.is_free.push_back(!mesh.is_border_vertex[v]);
-    }
-  }
-};
-
-internal::Patch whole_patch(const Mesh_on_surface& placed)
-{
-  std::vector<int> faces;
-  for(int f = 0; f < placed.mesh.number_of_faces(); ++f)
-    faces.push_back(f);
-  return internal::Patch_builder(placed.mesh).build(faces, placed.state);
-}
-
-// M is a coarse sheet on the upper one of two wavy sheets: its chords run beyond the lower one,
-// where every point of M's faces must still be mapped to the upper one.
-void test_map_to_upper_sheet(const Shape& sheets,
-                             const std::function<bool(int)>& is_on_upper,
-                             int coarseness,
-                             int expected_wrong_by_tree)
-{
-  const internal::Reference_surface surface = surface_of(sheets);
-  Shape coarse = plane_grid(coarseness, coarseness, 0.8);
-  for(Vector_3& p : coarse.points)
-    p += Vector_3(0.1, 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
-  const Mesh_on_surface placed(coarse, surface, is_on_upper);
-  const internal::Patch patch = whole_patch(placed);
-  Random random(5);
-  int mapped = 0, tried = 0, wrong_by_tree = 0;
-  for(int i = 0; i < 4000; ++i)
-  {
-    internal::Planar_location location;
-    location.triangle = random.index(patch.polygons.number_of_faces());
-    location.barycentric = random.barycentric();
-    if(i % 5 == 0)
-      location.barycentric = Vector_3::Unit(i % 3);
-    if(i % 5 == 1)
-      location.barycentric = Vector_3(0.5, 0.5, 0);
-    Vector_3 point = Vector_3::Zero();
-    for(int k = 0; k < 3; ++k)
-      point += location.barycentric(k) *
-               patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
-    ++tried;
-    wrong_by_tree += !is_on_upper(surface.closest(point).face);
-    internal::Located_vertex result;
-    if(!internal::map_to_reference(patch, location, surface, result))
-      continue;
-    ++mapped;
-    RCO_CHECK(is_on_upper(result.on_reference.face));
-    RCO_CHECK_LESS(0., result.normal.z());
-    RCO_CHECK(result.position == result.on_reference.position);
-    check_surface_point(surface, result.on_reference);
-    // it is near: not further than the chords are from the wave
-    RCO_CHECK_LESS((result.position - point).norm(), 0.06);
-    if(i % 5 == 0)
-      RCO_CHECK_LESS_EQUAL((result.position - point).norm(), 1e-12);
-  }
-  RCO_CHECK_LESS(0.99 * tried, double(mapped));
-  RCO_CHECK_LESS(expected_wrong_by_tree, wrong_by_tree);
-}
-
-void test_map_to_reference_on_sheets()
-{
-  for(const double gap : {1e-2, 1e-4, 1e-7})
-    for(const int coarseness : {10, 5})
-    {
-      const Scope scope("map_to_reference on a double sheet of gap " + std::to_string(gap));
-      const Shape sheet = double_sheet(48, gap, 0.05);
-      test_map_to_upper_sheet(
-        sheet, [&](int f) { return is_upper(sheet, f); }, coarseness,
-        coarseness == 5 || gap < 1e-3 ? 500 : -1);
-    }
-  // two shelves of the same normal, which only the path along R distinguishes
-  const Scope scope("map_to_reference on two shelves");
-  Shape shelf = plane_grid(48, 48);
-  for(Vector_3& p : shelf.points)
-    p.z() = 0.05 * std::sin(4 * pi * p.x());
-  const int faces = int(shelf.faces.size());
-  const Shape shelves = joined(shelf, shelf, Vector_3(0, 0, -0.015));
-  test_map_to_upper_sheet(
-    shelves, [=](int f) { return f < faces; }, 5, 500);
-}
-
-// A flat M on a flat R is mapped to itself. Next to faces of R that have no area it may be off by
-// their edges' length.
-void test_map_to_reference_on_plane()
-{
-  const Scope scope("map_to_reference on a plane");
-  Shape fine = plane_grid(24, 24);
-  Random random(6);
-  Shape damaged = fine;
-  // collapsed edges: vertices that lie on their neighbours
-  for(const int v : {130, 205, 333, 410})
-    damaged.points[v] = damaged.points[v + 1];
-  for(const bool is_damaged : {false, true})
-  {
-    const Shape& shape = is_damaged ? damaged : fine;
-    int exact = 0;
-    const internal::Reference_surface surface = surface_of(shape);
-    const Mesh_on_surface placed(plane_grid(5, 5), surface, [](int) { return true; });
-    const internal::Patch patch = whole_patch(placed);
-    for(int i = 0; i < 2000; ++i)
-    {
-      internal::Planar_location location;
-      location.triangle = random.index(patch.polygons.number_of_faces());
-      location.barycentric = random.barycentric();
-      Vector_3 point = Vector_3::Zero();
-      for(int k = 0; k < 3; ++k)
-        point += location.barycentric(k) *
-                 patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
-      internal::Located_vertex result;
-      if(RCO_CHECK(internal::map_to_reference(patch, location, surface, result)))
-      {
-        const double off = (result.position - point).norm();
-        exact += off <= 1e-9;
-        RCO_CHECK_LESS_EQUAL(off, is_damaged ? 0.06 : 1e-9);
-      }
-    }
-    RCO_CHECK_LESS_EQUAL(is_damaged ? 1980 : 2000, exact);
   }
 }
 
@@ -588,6 +420,202 @@ void test_bad_references()
   }
 }
 
+// the best of many ways from the point to the boundary of a triangle
+double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], const Vector_3& along)
+{
+  double most = 0;
+  const int steps = 400;
+  for(int i = 0; i < 3; ++i)
+    for(int k = 0; k <= steps; ++k)
+    {
+      const double t = double(k) / steps;
+      const Vector_3 displacement = (1 - t) * corners[i] + t * corners[(i + 1) % 3] - from;
+      if(displacement.norm() > 1e-12)
+        most = (std::max)(most, displacement.normalized().dot(along));
+    }
+  return most;
+}
+
+void test_progress()
+{
+  const Scope scope("progress in a wedge");
+  Random random(4);
+  for(int i = 0; i < 1000; ++i)
+  {
+    const Vector_3 a = random.in_cube(1), b = random.in_cube(1), d = random.in_cube(1);
+    if(a.cross(b).norm() < 0.05 * a.norm() * b.norm())
+      continue;
+    const double progress = internal::projected_length_in_wedge(a, b, d);
+    double most = 0;
+    const Vector_3 u = a.normalized(), w = (b - b.dot(u) * u).normalized();
+    const double angle = std::atan2(b.dot(w), b.dot(u));
+    for(int k = 0; k <= 1000; ++k)
+      most =
+        (std::max)(most, (std::cos(angle * k / 1000) * u + std::sin(angle * k / 1000) * w).dot(d));
+    RCO_CHECK_NEAR(progress, most, 1e-5 * d.norm());
+    RCO_CHECK_LESS_EQUAL(most, progress + 1e-12);
+    RCO_CHECK_NEAR(internal::projected_length_in_wedge(3 * b, 0.1 * a, d), progress, 1e-12);
+  }
+  // without an inside
+  const Vector_3 x = Vector_3::UnitX();
+  RCO_CHECK_EQUAL(internal::projected_length_in_wedge(x, 2 * x, x), 0.);
+  RCO_CHECK_EQUAL(internal::projected_length_in_wedge(x, Vector_3::Zero(), x), 0.);
+}
+
+void test_face_in_direction(const std::string& name, const Shape& shape)
+{
+  const Scope scope("face towards, " + name);
+  const internal::Reference_surface reference(copy_of(shape));
+  const Indexed_mesh& mesh = reference.mesh();
+  Random random(5);
+  const auto check_from = [&](const internal::Surface_point& from, const std::set<int>& around) {
+    const Vector_3 d = random.in_cube(1);
+    const int face = internal::face_in_direction(reference, from, d);
+    RCO_CHECK(around.count(face) > 0);
+    double most = 0, own = 0;
+    for(const int f : around)
+    {
+      const Vector_3 corners[3] = {reference.corner_point(f, 0), reference.corner_point(f, 1),
+                                   reference.corner_point(f, 2)};
+      const double progress = sampled_progress(from.position, corners, d);
+      most = (std::max)(most, progress);
+      if(f == face)
+        own = progress;
+    }
+    RCO_CHECK_NEAR(own, most, 1e-4 * d.norm());
+    if(most == 0)
+      RCO_CHECK_EQUAL(face, from.face);
+  };
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+  {
+    const int f = mesh.corner_face[c], i = c - mesh.face_begin[f], v = mesh.source(c);
+    Vector_3 inside = random.barycentric();
+    RCO_CHECK_EQUAL(internal::face_in_direction(reference, reference.point(f, inside), inside), f);
+
+    Vector_3 on_edge = Vector_3::Zero();
+    on_edge[i] = random(0.2, 0.8);
+    on_edge[(i + 1) % 3] = 1 - on_edge[i];
+    std::set<int> sides = {f};
+    if(mesh.opposite[c] >= 0)
+      sides.insert(mesh.corner_face[mesh.opposite[c]]);
+    check_from(reference.point(f, on_edge), sides);
+
+    std::set<int> fan;
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+      fan.insert(mesh.corner_face[mesh.vertex_corners[k]]);
+    check_from(reference.point(f, Vector_3::Unit(i)), fan);
+  }
+}
+
+void test_lines()
+{
+  Scope scope("lines");
+  Polyline_set lines;
+  const Vector_3 a(0, 0, 0), b(1, 0, 0), c(1, 2, 0);
+  const int first = lines.add(a, b, -1), second = lines.add(b, c, -1), third = lines.add(c, a, -1);
+  lines.connect(first, second);
+  Polyline_point p{first, 0.25};
+  RCO_CHECK(lines.advance(p, 1.25));
+  RCO_CHECK_EQUAL(p.segment, second);
+  RCO_CHECK_NEAR((lines.position(p) - Vector_3(1, 0.5, 0)).norm(), 0, 1e-15);
+  RCO_CHECK(lines.advance(p, -1.5));
+  RCO_CHECK_NEAR((lines.position(p) - a).norm(), 0, 1e-15);
+  RCO_CHECK(!lines.advance(p, -1e-3)); // the line starts here
+  p = {second, 0.5};
+  RCO_CHECK(!lines.advance(p, 1.5)); // and ends at c
+  RCO_CHECK_NEAR((lines.tangent({second, 0}) - Vector_3(1, 1, 0).normalized()).norm(), 0, 1e-15);
+  RCO_CHECK_NEAR((lines.tangent({second, 0.5}) - Vector_3(0, 1, 0)).norm(), 0, 1e-15);
+
+  // once round
+  lines.connect(second, third);
+  lines.connect(third, first);
+  p = {first, 0.25};
+  RCO_CHECK(lines.advance(p, 3 + std::sqrt(5.)));
+  RCO_CHECK_NEAR((lines.position(p) - Vector_3(0.25, 0, 0)).norm(), 0, 1e-14);
+}
+
+Shape noisy(Shape s, double amount)
+{
+  Random random(6);
+  for(Vector_3& p : s.points)
+    p += random.in_cube(amount);
+  return s;
+}
+
+std::pair<RCO::Feature_report, Mesh::Property_map<Mesh::Edge_index, bool>> detected(Mesh& mesh)
+{
+  auto map = mesh.add_property_map<Mesh::Edge_index, bool>("e:is_feature", false).first;
+  const RCO::Feature_report report = RCO::detect_features(mesh, map);
+  std::size_t count = 0;
+  for(const Mesh::Edge_index e : mesh.edges())
+    count += map[e];
+  RCO_CHECK_EQUAL(count, report.number_of_feature_edges);
+  RCO_CHECK_EQUAL(count > 0, report.has_features);
+  return {report, map};
+}
+
+std::size_t number_of_features(const Shape& shape)
+{
+  Mesh mesh = make_mesh<Mesh>(shape);
+  return detected(mesh).first.number_of_feature_edges;
+}
+
+void test_detection()
+{
+  const Scope scope("detection");
+  const int n = 6;
+  for(const bool quads : {false, true})
+  {
+    Mesh mesh = make_mesh<Mesh>(cube(n, quads));
+    const auto map = detected(mesh).second;
+    for(const Mesh::Edge_index e : mesh.edges())
+    {
+      const auto p = mesh.point(mesh.vertex(e, 0)), q = mesh.point(mesh.vertex(e, 1));
+      const Vector_3 middle(0.5 * (p.x() + q.x()), 0.5 * (p.y() + q.y()), 0.5 * (p.z() + q.z()));
+      RCO_CHECK_EQUAL(bool(map[e]), number_of_planes(middle) == 2);
+    }
+  }
+  RCO_CHECK_EQUAL(number_of_features(noisy(cube(n), 0.03 / n)), std::size_t(12 * n));
+  RCO_CHECK_EQUAL(number_of_features(turned_round(cube(n))), std::size_t(12 * n));
+  RCO_CHECK_EQUAL(number_of_features(closed_cylinder(24, 4, 1, 2)), std::size_t(48));
+  RCO_CHECK_EQUAL(number_of_features(tetrahedron()), std::size_t(6)); // all there is is sharp
+
+  const Shape ball = icosphere(3);
+  for(const double noise : {0., 0.01, 0.03, 0.06})
+    RCO_CHECK_EQUAL(number_of_features(noisy(ball, noise)), std::size_t(0));
+  RCO_CHECK_EQUAL(number_of_features(torus(30, 12)), std::size_t(0));
+  // each component is judged by itself
+  RCO_CHECK_EQUAL(number_of_features(joined(cube(n), noisy(ball, 0.06), Vector_3(5, 0, 0))),
+                  std::size_t(12 * n));
+}
+
+// Nowhere more than the default, nor than a part of what is there, and no jumps.
+void test_local_bounds()
+{
+  const Scope scope("local bounds");
+  Shape shape = plane_grid(30, 30);
+  for(Vector_3& p : shape.points) // finer and finer towards a corner
+    p = Vector_3(std::pow(p.x(), 3), std::pow(p.y(), 3), 0);
+  const RCO::internal::Reference_surface surface(copy_of(shape));
+  const double bound = 0.25 * surface.mean_edge_length();
+  const Indexed_mesh& mesh = surface.mesh();
+  for(const bool mechanical : {false, true})
+  {
+    const std::vector<char> is_mechanical(mesh.number_of_faces(), mechanical);
+    const std::vector<double> bounds = RCO::internal::local_bounds(surface, is_mechanical, bound);
+    RCO_CHECK_EQUAL(bounds.size(), shape.points.size());
+    RCO_CHECK_LESS_EQUAL(*std::max_element(bounds.begin(), bounds.end()),
+                         mechanical ? 0.2 * bound : bound);
+    RCO_CHECK_LESS(*std::min_element(bounds.begin(), bounds.end()), 0.1 * bound);
+    for(int c = 0; c < mesh.number_of_corners(); ++c)
+    {
+      const int v = mesh.source(c), w = mesh.target(c);
+      RCO_CHECK_LESS_EQUAL(bounds[v],
+                           bounds[w] + 0.51 * (shape.points[v] - shape.points[w]).norm());
+    }
+  }
+}
+
 int main()
 {
   test_closest_barycentric();
@@ -600,10 +628,20 @@ int main()
   test_degenerate_edges();
   test_descend_on_convex_surfaces();
   test_descend_on_double_sheet();
-  test_map_to_reference_on_sheets();
-  test_map_to_reference_on_plane();
   test_normals();
   test_is_reachable();
   test_bad_references();
+  test_progress();
+  Shape bumps = plane_grid(9, 7);
+  Random random(8);
+  for(Vector_3& p : bumps.points)
+    p += random.in_cube(0.03) + random(-0.1, 0.1) * Vector_3::UnitZ();
+  test_face_in_direction("bumps with a border", bumps);
+  test_face_in_direction("torus",
+                         scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));
+  test_face_in_direction("tetrahedron", tetrahedron());
+  test_lines();
+  test_detection();
+  test_local_bounds();
   return report();
 }

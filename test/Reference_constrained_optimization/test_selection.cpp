@@ -2,15 +2,20 @@
 //
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Cone proxies, the disk guard, and the growing of patches.
+// Cone proxies, disk topology, the growing of patches, and partitions.
 
 #include "checks.h"
 #include "deformations.h"
 
+#include <CGAL/Random.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
+#include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_rounds.h>
 
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 
 using namespace rco_test;
 
@@ -220,9 +225,9 @@ bool is_disk(const Indexed_mesh& mesh, const std::vector<int>& faces)
 }
 
 // preserves_disk() against the definition, for every face beside random disks
-void test_disk_guard(const Shape& shape, const std::string& name)
+void test_disk_topology(const Shape& shape, const std::string& name)
 {
-  const Scope scope("disk guard on " + name);
+  const Scope scope("disk topology on " + name);
   const Indexed_mesh mesh = indexed(shape);
   const int n = mesh.number_of_faces();
   Random random(2);
@@ -403,7 +408,7 @@ void test_patches()
   };
   for(const auto& s : shapes)
   {
-    test_disk_guard(s.second, s.first);
+    test_disk_topology(s.second, s.first);
     test_growing(s.second, s.first);
   }
   RCO_CHECK_EQUAL(test_growing(tetrahedron(), "a tetrahedron"), std::size_t(3));
@@ -562,6 +567,172 @@ void test_degenerate_faces()
   test_growing(shape, "a plane with faces of no area");
 }
 
+typedef std::vector<std::vector<int>> Patches;
+
+bool is_connected(const Indexed_mesh& mesh, const std::vector<int>& faces)
+{
+  std::set<int> missing(faces.begin(), faces.end());
+  std::vector<int> stack(1, faces.front());
+  missing.erase(faces.front());
+  while(!stack.empty())
+  {
+    const int f = stack.back();
+    stack.pop_back();
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(mesh.opposite[c] >= 0 && missing.erase(mesh.corner_face[mesh.opposite[c]]))
+        stack.push_back(mesh.corner_face[mesh.opposite[c]]);
+  }
+  return missing.empty();
+}
+
+Patches
+divided(const Indexed_mesh& mesh, const std::vector<char>& is_selected, int size, unsigned int seed)
+{
+  internal::Patch_partition partition(mesh, size);
+  RCO_CHECK_EQUAL(partition.patch_size(), size);
+  CGAL::Random random(seed);
+  const Patches patches = partition.divide(is_selected, random);
+
+  std::vector<int> times(mesh.number_of_faces(), 0);
+  std::size_t previous = times.size();
+  for(const std::vector<int>& patch : patches)
+  {
+    if(!RCO_CHECK(!patch.empty()))
+      continue;
+    RCO_CHECK_LESS_EQUAL(patch.size(), previous);
+    previous = patch.size();
+    for(const int f : patch)
+      ++times[f];
+    RCO_CHECK(is_connected(mesh, patch));
+  }
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+    RCO_CHECK_EQUAL(times[f], int(is_selected[f] != 0));
+
+  // an object that has divided something else before gives the same
+  internal::Patch_partition used(mesh, 7 * size);
+  CGAL::Random other(seed + 1), again(seed);
+  used.divide(is_selected, other);
+  used.set_patch_size(size);
+  RCO_CHECK(used.divide(is_selected, again) == patches);
+
+  // whole regions: again all wanted faces once, and none that touches another unless it was too large
+  CGAL::Random third(seed);
+  std::vector<int> patch_of(mesh.number_of_faces(), -1);
+  int number = 0;
+  for(const std::vector<int>& patch : used.divide_regions(is_selected, third))
+  {
+    RCO_CHECK(is_connected(mesh, patch));
+    for(const int f : patch)
+    {
+      RCO_CHECK_EQUAL(patch_of[f], -1);
+      patch_of[f] = number;
+    }
+    ++number;
+  }
+  int touching = 0;
+  for(int f = 0; f < mesh.number_of_faces(); ++f)
+  {
+    RCO_CHECK_EQUAL(patch_of[f] >= 0, is_selected[f] != 0);
+    for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if(mesh.opposite[c] >= 0 && patch_of[f] >= 0)
+      {
+        const int other = patch_of[mesh.corner_face[mesh.opposite[c]]];
+        touching += other >= 0 && other != patch_of[f];
+      }
+  }
+  const bool any_large = std::count(is_selected.begin(), is_selected.end(), char(1)) > 3 * size;
+  RCO_CHECK(any_large || touching == 0);
+  return patches;
+}
+
+void test_partition()
+{
+  const Scope scope("partition");
+  {
+    const Scope s("regular torus");
+    const Indexed_mesh mesh = indexed(torus(80, 40));
+    const std::vector<char> all(mesh.number_of_faces(), 1);
+    for(const int size : {50, 200, 1000})
+      for(unsigned int seed = 0; seed < 5; ++seed)
+      {
+        const Patches patches = divided(mesh, all, size, seed);
+        RCO_CHECK_EQUAL(int(patches.size()), (mesh.number_of_faces() + size - 1) / size);
+        RCO_CHECK_LESS_EQUAL(double(patches.front().size()), 3.2 * size);
+        // cells of seeds that happen to be close stay small, but few of them
+        const auto large =
+          std::count_if(patches.begin(), patches.end(), [&](const std::vector<int>& patch) {
+            return 3.2 * double(patch.size()) >= size;
+          });
+        RCO_CHECK_LESS_EQUAL(0.9 * double(patches.size()), double(large));
+      }
+    RCO_CHECK(divided(mesh, all, 200, 0) != divided(mesh, all, 200, 1));
+    RCO_CHECK(divided(mesh, std::vector<char>(all.size(), 0), 200, 0).empty());
+    RCO_CHECK_EQUAL(divided(mesh, all, 1000000, 0).size(), std::size_t(1));
+    RCO_CHECK_EQUAL(divided(mesh, all, 1, 0).size(), all.size());
+  }
+  {
+    const Scope s("several components");
+    // the small ones mostly get no seed, or one only and are a cell without end
+    const Shape shape = joined(joined(joined(torus(30, 12), tetrahedron(), Vector_3(5, 0, 0)),
+                                      icosphere(1), Vector_3(0, 5, 0)),
+                               plane_grid(9, 5, 1, true), Vector_3(0, 0, 5));
+    const Indexed_mesh mesh = indexed(shape);
+    const std::vector<char> all(mesh.number_of_faces(), 1);
+    for(unsigned int seed = 0; seed < 10; ++seed)
+      for(const int size : {3, 40, 400, 100000})
+        RCO_CHECK_LESS_EQUAL(std::size_t(4), divided(mesh, all, size, seed).size());
+    RCO_CHECK_EQUAL(divided(mesh, all, 100000, 0).size(), std::size_t(4));
+  }
+  {
+    const Scope s("some faces");
+    const Indexed_mesh mesh = indexed(torus(30, 12));
+    Random random(1);
+    for(const double share : {0.002, 0.1, 0.5, 0.9})
+      for(unsigned int seed = 0; seed < 5; ++seed)
+      {
+        std::vector<char> is_selected(mesh.number_of_faces());
+        for(char& w : is_selected)
+          w = random() < share;
+        divided(mesh, is_selected, 30, seed);
+      }
+    std::vector<char> one(mesh.number_of_faces(), 0);
+    one[17] = 1;
+    RCO_CHECK(divided(mesh, one, 30, 0) == Patches(1, {17}));
+  }
+}
+
+// The faces around vertices, ring by ring, whether they are few or many.
+void test_active_set()
+{
+  const Scope scope("active set");
+  const Indexed_mesh mesh = indexed(torus(30, 12));
+  Random random(6);
+  for(const double share : {0., 0.002, 0.2})
+    for(const int rings : {0, 1, 3})
+    {
+      std::vector<char> is_center;
+      std::set<int> vertices, faces;
+      for(int v = 0; v < mesh.number_of_vertices(); ++v)
+      {
+        is_center.push_back(random() < share);
+        if(is_center[v])
+          vertices.insert(v);
+      }
+      for(int ring = 0; ring <= rings; ++ring)
+      {
+        for(int c = 0; c < mesh.number_of_corners(); ++c)
+          if(vertices.count(mesh.source(c)))
+            faces.insert(mesh.corner_face[c]);
+        for(int c = 0; c < mesh.number_of_corners(); ++c)
+          if(faces.count(mesh.corner_face[c]))
+            vertices.insert(mesh.source(c));
+      }
+      const std::vector<char> around = internal::faces_around(mesh, is_center, rings);
+      for(int f = 0; f < mesh.number_of_faces(); ++f)
+        RCO_CHECK_EQUAL(bool(around[f]), faces.count(f) > 0);
+    }
+}
+
 int main()
 {
   test_cone_proxy();
@@ -570,5 +741,7 @@ int main()
   test_touched();
   test_threshold();
   test_degenerate_faces();
+  test_partition();
+  test_active_set();
   return report();
 }

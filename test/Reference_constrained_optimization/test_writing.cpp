@@ -1,0 +1,171 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Results are written, and defects at the end are repaired locally.
+
+#include "Located_shape.h"
+#include "checks.h"
+#include "deformations.h"
+#include "meshes.h"
+
+#include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/Defect_repair.h>
+#include <CGAL/Reference_constrained_optimization/internal/writing/write_back.h>
+
+using namespace rco_test;
+
+// Defects at the end are repaired locally.
+void test_defect_repair()
+{
+  const Scope scope("repair");
+  using namespace RCO::internal;
+  typedef Defect_repair<CGAL::Sequential_tag> Sequential_defect_repair;
+  typedef std::vector<Located_vertex> Vertices;
+  const int n = 12;
+  const auto id = [](int i, int j) { return j * (n + 1) + i; };
+  const auto with_state = [&](const auto& energy, const Shape& given, const auto& test) {
+    Located_shape scene(given, plane_grid(n, n, n), energy);
+    Optimization_state& state = scene.state;
+    state.is_free.assign(given.points.size(), 1);
+    const Vertices start = state.vertices;
+    const auto move = [&](int v, double dx, double dy) {
+      const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
+      state.vertices[v].on_reference = scene.surface.closest(p);
+      state.vertices[v].position = p;
+    };
+    const auto defects = [&]() {
+      return find_output_defects<CGAL::Sequential_tag>(state, state.vertices);
+    };
+    const auto is_at = [&](int v, const Vertices& vertices) {
+      return same_bits(state.vertices[v].position, vertices[v].position) &&
+             same_bits(state.vertices[v].on_reference.barycentric,
+                       vertices[v].on_reference.barycentric);
+    };
+    test(state, start, move, defects, is_at);
+  };
+  const Shape triangles = plane_grid(n, n, n);
+  {
+    const Scope s("faces that are inverted");
+    with_state(RCO::Minimum_angle_energy(), triangles,
+               [&](Optimization_state& state, const Vertices& start, const auto& move,
+                   const auto& defects, const auto& is_at) {
+                 move(id(3, 3), 1.6, 0.1);
+                 Sequential_defect_repair repair(state, start);
+                 RCO_CHECK_LESS(std::size_t(0), defects().number);
+                 repair.run();
+                 RCO_CHECK(repair.has_restored_vertices());
+                 RCO_CHECK(is_at(id(3, 3), start));
+               });
+  }
+  // a face of the input with an angle far below that of the others leaves them free to move
+  Shape thin = triangles;
+  thin.points[id(1, 1)].x() += 0.95;
+  {
+    // three columns have moved, one vertex too far: others would be inverted if it returned alone
+    const Scope s("what is around");
+    with_state(RCO::Minimum_angle_energy(), thin,
+               [&](Optimization_state& state, const Vertices& start, const auto& move,
+                   const auto& defects, const auto& is_at) {
+                 for(int j = 4; j < 9; ++j)
+                   for(int i = 3; i < 6; ++i)
+                     move(id(i, j), i == 3 ? 1.7 : i == 4 ? 1.3 : 0.4, 0);
+                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 move(id(4, 6), 0.2, 0);
+                 move(id(10, 10), 0.2, 0.1);
+                 const Vertices gained = state.vertices;
+                 RCO_CHECK_LESS(std::size_t(0), defects().number);
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 RCO_CHECK(is_at(id(3, 6), start));
+                 RCO_CHECK(is_at(id(10, 10), gained));
+               });
+  }
+  {
+    const Scope s("an angle that is slightly smaller");
+    with_state(RCO::Minimum_angle_energy(), thin,
+               [&](Optimization_state& state, const Vertices& start, const auto& move,
+                   const auto& defects, const auto& is_at) {
+                 move(id(8, 8), 0.2, 0.1);
+                 const double smallest = defects().smallest_angle;
+                 move(id(1, 1), 1e-9, 0);
+                 RCO_CHECK_LESS(defects().smallest_angle, smallest);
+                 const Vertices gained = state.vertices;
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK_EQUAL(defects().smallest_angle, smallest);
+                 RCO_CHECK(is_at(id(1, 1), start));
+                 RCO_CHECK(is_at(id(8, 8), gained));
+               });
+  }
+  {
+    const Scope s("a quad that is slightly non-convex");
+    with_state(RCO::Quad_angle_energy(), plane_grid(n, n, n, true),
+               [&](Optimization_state& state, const Vertices& start, const auto& move,
+                   const auto& defects, const auto& is_at) {
+                 move(id(3, 3), 0.5 + 1e-12, 0.5 + 1e-12);
+                 move(id(9, 9), 0.2, 0.1);
+                 RCO_CHECK_EQUAL(defects().number, std::size_t(1));
+                 const Vertices gained = state.vertices;
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK(repair.has_restored_vertices());
+                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 RCO_CHECK(is_at(id(3, 3), start));
+                 RCO_CHECK(is_at(id(9, 9), gained));
+               });
+  }
+  {
+    const Scope s("an energy that has risen");
+    with_state(RCO::Minimum_angle_energy(), thin,
+               [&](Optimization_state& state, const Vertices& start, const auto& move, const auto&,
+                   const auto& is_at) {
+                 move(id(9, 9), 0.1, 0);
+                 move(id(5, 4), 0.2, 0.1);
+                 const Vertices moved = state.vertices;
+                 Sequential_defect_repair repair(state, start);
+                 repair.run();
+                 RCO_CHECK(!repair.has_restored_vertices());
+                 const auto density = RCO::Minimum_angle_energy().density();
+                 RCO_CHECK(repair.enlarge(density));
+                 RCO_CHECK(is_at(id(5, 4), start) && is_at(id(9, 9), moved));
+                 while(repair.enlarge(density))
+                 {}
+                 RCO_CHECK(is_at(id(9, 9), start));
+               });
+  }
+}
+
+// Points that did not move keep their bits, others are those of the state in the user's coordinates.
+void test_points()
+{
+  const Scope scope("points");
+  const auto placed = [](Shape shape) {
+    return deformed(
+      shape, [](const Vector_3& p) -> Vector_3 { return 0.7 * p + Vector_3(1e5, 0.1, -3e4); });
+  };
+  const Shape sphere = placed(icosphere(2)),
+              start = placed(scrambled(icosphere(2), 0.2, 1, onto_sphere));
+  Mesh mesh = make_mesh<Mesh>(start);
+  const internal::Frame frame(copy_of(sphere));
+  Located_shape scene(start, sphere);
+  std::vector<Vector_3> before;
+  for(std::size_t v = 0; v < start.points.size(); ++v)
+  {
+    before.push_back(frame(start.points[v]));
+    scene.state.vertices[v].position = v % 3 == 0 ? frame(sphere.points[v]) : before[v];
+  }
+  internal::write_points(mesh, get(CGAL::vertex_point, mesh), before, scene.state, frame);
+  const Shape after = make_shape(mesh);
+  for(std::size_t v = 0; v < start.points.size(); ++v)
+    RCO_CHECK(same_bits(after.points[v], v % 3 == 0 ? sphere.points[v] : start.points[v]));
+}
+
+int main()
+{
+  test_defect_repair();
+  test_points();
+  return report();
+}
