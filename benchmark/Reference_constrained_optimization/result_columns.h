@@ -75,7 +75,7 @@ inline void add_stages(Row& row, const CGAL::Reference_constrained_optimization:
   row.add("acceptance_percent", percentage(t.acceptance, all));
 }
 
-// The time of a run and the yardstick for it, the time of one factorization of the whole mesh' system;
+// The time of a run and a reference for it, the time of one factorization of the whole mesh' system;
 // that is left out for large meshes.
 inline void add_times(Row& row, const Mesh& mesh, double seconds)
 {

@@ -28,7 +28,7 @@ const std::string usage =
 
 Optimizes a mesh (OFF, OBJ, PLY, STL), or one that is generated with something wrong, and prints a line of
 JSON: how the run ended, whether that is expected, and the smallest angles of the faces. What the package
-promises is verified. robustness.py does so for many.
+guarantees is verified. robustness.py does so for many.
 
   --generated            the input is the name of one that is generated
   --names                prints the names of those that are, with | between them

@@ -3,7 +3,7 @@
 Optimizes every mesh (OFF, OBJ, PLY, STL) of files and folders, and small generated inputs with something
 wrong: as they are, times 2^-20, 2^20, 1e-6 and 1e6, translated by 1e6 diagonals, with another random seed,
 and with random noise of up to 0.3 mean edges against the mesh without it. Each run has a process of its
-own. How it ended is compared with what is expected, and what the package promises is verified. Times a
+own. How it ended is compared with what is expected, and what the package guarantees is verified. Times a
 power of two all digits of the smallest angles must be the same. How far they change in other units and far
 away is told, beside what another random seed does. Markdown tables and a list of all that is not as expected go to
 the standard output.
