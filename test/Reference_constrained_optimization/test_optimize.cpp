@@ -4,6 +4,7 @@
 
 // The whole optimization: what every result must satisfy, whatever the mesh.
 
+#include "Recorder.h"
 #include "checks.h"
 #include "deformations.h"
 #include "meshes.h"
@@ -13,91 +14,17 @@
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polyhedron_3.h>
 
 #ifdef CGAL_LINKED_WITH_TBB
 #include <tbb/global_control.h>
 #endif
 
 #include <cstring>
-#include <stdexcept>
+#include <functional>
+#include <limits>
+#include <set>
 
 using namespace rco_test;
-
-typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
-
-struct Stopped : std::runtime_error
-{
-  Stopped() : std::runtime_error("the visitor stops") {}
-};
-
-// the tolerance for the rounding of sums in the energies that a visitor receives
-const double on_the_way = 1e-8;
-
-// Tests every patch and adds up what it is told; stops when told to.
-struct Recorder : RCO::Default_visitor
-{
-  long questions_until_stop = -1, patches_until_throw = -1;
-  long questions = 0, questions_of_setup = 0, questions_of_iterations = 0;
-
-  std::size_t iterations = 0, rounds = 0, patches = 0, accepted = 0, faces = 0, open_rounds = 0;
-  std::size_t announced = 0;
-  double energy_change = 0;
-  std::size_t finishing = 0; // accepted patches of the finishing stage
-  long defect_change = 0;
-  std::vector<double> energies, changes; // at the end of each iteration, the latter from the start
-
-  void on_iteration_begin(std::size_t i)
-  {
-    RCO_CHECK_EQUAL(i, iterations);
-    if(i == 0)
-      questions_of_setup = questions;
-  }
-  void on_iteration_end(std::size_t i, double energy)
-  {
-    RCO_CHECK_EQUAL(i, iterations);
-    RCO_CHECK(std::isfinite(energy));
-    ++iterations;
-    questions_of_iterations = questions;
-    energies.push_back(energy);
-    changes.push_back(energy_change);
-  }
-  void on_round_begin(std::size_t n)
-  {
-    ++rounds;
-    ++open_rounds;
-    announced += n;
-  }
-  void on_round_end() { --open_rounds; }
-  void on_patch_end(const RCO::Patch_report& r)
-  {
-    ++patches;
-    faces += r.number_of_faces;
-    if(r.accepted)
-    {
-      ++accepted;
-      RCO_CHECK(r.defects_after < r.defects_before ||
-                (r.defects_after == r.defects_before && r.energy_after < r.energy_before));
-      // in the finishing stage energies have a barrier, and steps may be taken back
-      finishing += r.is_finishing;
-      energy_change += r.energy_after - r.energy_before;
-      defect_change += long(r.defects_after) - long(r.defects_before);
-    }
-    else
-    {
-      RCO_CHECK_EQUAL(r.defects_after, r.defects_before);
-      RCO_CHECK_EQUAL(r.energy_after, r.energy_before);
-    }
-    if(patches_until_throw >= 0 && patches_until_throw-- == 0)
-      throw Stopped();
-  }
-  bool go_further()
-  {
-    ++questions;
-    return questions_until_stop < 0 || questions_until_stop-- > 0;
-  }
-};
 
 struct Options
 {
@@ -258,8 +185,8 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
   return m;
 }
 
-// All that must hold of any run. `unit` is the distance of neighbouring numbers near 1.
-Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
+// All that must hold of any run.
+Measures check_outcome(const Outcome& out, double k = 1)
 {
   const RCO::Result& r = out.result;
   const Recorder& seen = out.recorder;
@@ -268,8 +195,8 @@ Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
   const std::vector<Vector_3>& points = out.reference.points;
   const double largest =
     internal::largest_coordinate(surface, [&](int v) -> const Vector_3& { return points[v]; });
-  const double tolerance =
-    1e-12 * internal::bounding_box_diagonal(surface, points) + 4 * unit * largest;
+  const double tolerance = 1e-12 * internal::bounding_box_diagonal(surface, points) +
+                           4 * std::numeric_limits<double>::epsilon() * largest;
 
   RCO_CHECK(out.before.faces == out.after.faces);
   std::size_t number_free = 0;
@@ -304,37 +231,22 @@ Measures check_outcome(const Outcome& out, double k = 1, double unit = 2.3e-16)
   RCO_CHECK_LESS_EQUAL(defects_after, defects_before);
   if(defects_after == defects_before)
     RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
-  if(unit < 1e-10)
-  {
-    RCO_CHECK_EQUAL(after.flips, r.number_of_flips);
-    RCO_CHECK_EQUAL(after.folds, r.number_of_fold_edges);
-  }
+  RCO_CHECK_EQUAL(after.flips, r.number_of_flips);
+  RCO_CHECK_EQUAL(after.folds, r.number_of_fold_edges);
   if(after.is_plain)
-    RCO_CHECK_NEAR(r.final_energy, after.energy, 1e-7 * after.energy * (unit / 2.3e-16));
+    RCO_CHECK_NEAR(r.final_energy, after.energy, 1e-7 * after.energy);
 
   // what the visitor was told adds up to the result
   RCO_CHECK_EQUAL(r.number_of_iterations, seen.iterations);
   RCO_CHECK_EQUAL(r.number_of_rounds, seen.rounds);
-  RCO_CHECK_EQUAL(r.number_of_patches, seen.patches);
   RCO_CHECK_LESS_EQUAL(r.number_of_patches, seen.announced);
   if(r.status == RCO::Status::converged || r.status == RCO::Status::iteration_limit)
     RCO_CHECK_EQUAL(r.number_of_patches, seen.announced);
-  RCO_CHECK_EQUAL(r.number_of_accepted_patches, seen.accepted);
   RCO_CHECK_EQUAL(r.sum_of_patch_sizes, double(seen.faces));
   RCO_CHECK_EQUAL(seen.open_rounds, std::size_t(0));
   RCO_CHECK_LESS_EQUAL(r.number_of_flattened_patches, r.number_of_accepted_patches);
-  if(seen.finishing == 0)
-    RCO_CHECK_EQUAL(long(defects_after) - long(defects_before), seen.defect_change);
-  if(seen.finishing == 0 && r.initial_energy < 1e6)
-  {
-    const double elements =
-      double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1);
-    for(std::size_t i = 1; i < seen.energies.size(); ++i)
-      RCO_CHECK_NEAR((seen.energies[i] - seen.energies[i - 1]) * elements,
-                     seen.changes[i] - seen.changes[i - 1], 1e-8 * r.initial_energy * elements);
-    RCO_CHECK_NEAR((r.final_energy - r.initial_energy) * elements, seen.energy_change,
-                   on_the_way * r.initial_energy * elements);
-  }
+  seen.check_sums(r,
+                  double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1));
   for(std::size_t i = 0; i < seen.energies.size() && defects_before == 0; ++i)
     RCO_CHECK_LESS_EQUAL(seen.energies[i], i == 0 ? r.initial_energy * (1 + on_the_way)
                                                   : seen.energies[i - 1] * (1 + 1e-12));
@@ -728,46 +640,6 @@ void test_determinism()
   RCO_CHECK_EQUAL(same.result.largest_initial_distance, 0.);
 }
 
-template <typename M>
-Outcome with_mesh_type(const Shape& rough, const Shape& regular, double unit)
-{
-  M mesh = make_mesh<M>(rough);
-  const M reference = make_mesh<M>(regular);
-  Options options;
-  options.iterations = 3;
-  const Outcome out =
-    run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
-  check_outcome(out, 1, unit);
-  RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
-  return out;
-}
-
-void test_mesh_types()
-{
-  const Scope scope("mesh types");
-  const Shape regular = icosphere(2), rough = scrambled(regular, 0.3, 13, onto_sphere);
-  const Outcome plain = with_mesh_type<Mesh>(rough, regular, 2.3e-16);
-  const Outcome epick = with_mesh_type<CGAL::Surface_mesh<Epick::Point_3>>(rough, regular, 2.3e-16);
-  const Outcome polyhedron = with_mesh_type<CGAL::Polyhedron_3<Epick>>(rough, regular, 2.3e-16);
-  RCO_CHECK(same_bits(plain.after, epick.after));
-  RCO_CHECK(same_bits(plain.after, polyhedron.after));
-  const Outcome single = with_mesh_type<CGAL::Surface_mesh<CGAL::Simple_cartesian<float>::Point_3>>(
-    rough, regular, 1.2e-7);
-  RCO_CHECK_NEAR(smallest_angle(single.after), smallest_angle(plain.after), 3.);
-
-  // mesh and reference of different types, and another order of faces: as good
-  CGAL::Polyhedron_3<Epick> mesh = make_mesh<CGAL::Polyhedron_3<Epick>>(rough);
-  Shape turned = regular;
-  std::reverse(turned.faces.begin(), turned.faces.end());
-  for(auto& f : turned.faces)
-    std::reverse(f.begin(), f.end()); // a reference that is oriented the other way
-  const Mesh reference = make_mesh<Mesh>(turned);
-  const RCO::Result r =
-    CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
-  RCO_CHECK_EQUAL(r.initial_number_of_flips, std::size_t(0));
-  RCO_CHECK_NEAR(r.final_energy, plain.result.final_energy, 0.05 * r.final_energy);
-}
-
 // counts how often it is asked whether to go on, as after every few hundred trials of a search
 struct Question_counter : RCO::Default_visitor
 {
@@ -1028,7 +900,6 @@ int main()
   timed("degenerate faces", test_degenerate_faces);
   timed("thin sheet", test_thin_sheet);
   timed("determinism", test_determinism);
-  timed("mesh types", test_mesh_types);
   timed("nothing to gain", test_nothing_to_gain);
   timed("endings", test_endings);
   timed("exponents", test_exponents);
