@@ -8,7 +8,6 @@
 #define RCO_TEST_STRAIGHT_ROWS_H
 
 #include <CGAL/Reference_constrained_optimization/Energy_stencil.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 
 #include <Eigen/Core>
 

@@ -26,6 +26,7 @@ namespace rco_test {
 namespace RCO = CGAL::Reference_constrained_optimization;
 namespace internal = RCO::internal;
 using internal::Indexed_mesh;
+
 // A polygon mesh as points and faces.
 struct Shape
 {
