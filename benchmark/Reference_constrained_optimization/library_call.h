@@ -5,16 +5,15 @@
 
 #include "Monotonicity_visitor.h"
 #include "meshes.h"
-#include "method.h"
+#include "paper_pipeline.h"
 #include "settings.h"
 
-#include <CGAL/Reference_constrained_optimization/internal/optimize.h>
-#include <CGAL/Reference_constrained_optimization/internal/read_parameters.h>
 #include <CGAL/Reference_constrained_optimization/named_parameters.h>
+#include <CGAL/reference_constrained_optimize.h>
 #include <CGAL/tags.h>
 
 #include <functional>
-#include <string>
+#include <stdexcept>
 
 // Appends the common settings to a list of the package's own parameters, which must come first. To
 // what it returns CGAL's can be appended.
@@ -22,6 +21,7 @@ template <typename Own_parameters, typename Visitor>
 auto with_common_settings(const Own_parameters& own, const Common_settings& s, Visitor& visitor)
 {
   return own.energy_tolerance(s.tolerance)
+    .use_on_surface_steps(s.method != "plain")
     .maximum_patch_size(s.patch_size)
     .number_of_iterations(s.iterations)
     .random_seed(s.seed)
@@ -29,24 +29,24 @@ auto with_common_settings(const Own_parameters& own, const Common_settings& s, V
     .visitor(std::ref(visitor));
 }
 
-// as the public function does, but for what the method turns off
+// by the public function, or as the paper describes it
 template <typename Energy, typename Named_parameters>
 CGAL::Reference_constrained_optimization::Result optimize(Mesh& mesh,
                                                           const Mesh& reference,
                                                           const Energy& energy,
                                                           const Named_parameters& np,
-                                                          const std::string& method,
-                                                          [[maybe_unused]] bool parallel)
+                                                          const Common_settings& s)
 {
-  namespace internal = CGAL::Reference_constrained_optimization::internal;
-  internal::Loop_parameters p = internal::read_loop_parameters(internal::cgal_parameters(np));
-  set_method(method, p);
-  const auto np_reference = CGAL::parameters::default_values();
+  if(s.method == "paper")
+    return paper::optimize(mesh, reference, energy,
+                           CGAL::Reference_constrained_optimization::internal::cgal_parameters(np));
+  if(s.method != "ours" && s.method != "plain")
+    throw std::invalid_argument("there is no method " + s.method);
 #ifdef CGAL_LINKED_WITH_TBB
-  if(parallel)
-    return internal::optimize<CGAL::Parallel_tag>(mesh, reference, energy, p, np, np_reference);
+  if(s.parallel)
+    return CGAL::reference_constrained_optimize<CGAL::Parallel_tag>(mesh, reference, energy, np);
 #endif
-  return internal::optimize<CGAL::Sequential_tag>(mesh, reference, energy, p, np, np_reference);
+  return CGAL::reference_constrained_optimize(mesh, reference, energy, np);
 }
 
 #endif // RCO_BENCHMARK_LIBRARY_CALL_H

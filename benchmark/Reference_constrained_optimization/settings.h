@@ -18,9 +18,9 @@ const std::string common_usage = R"(  --developability E     threshold for a fac
   --tolerance T          relative decrease of the energy per iteration that ends the run
   --seed N               random seed
   --time-limit S         seconds
-  --method NAME          ours (default); plain: without on-surface steps and finishing; paper: as the
-                         paper describes it, every patch flattened from Tutte's embedding, optimized
-                         to the end in the plane, and kept whatever comes back
+  --method NAME          ours (default); plain: every patch is flattened, and no more; paper: as the
+                         paper describes it, one patch after the other, flattened from Tutte's
+                         embedding, optimized to the end in the plane, and kept whatever comes back
   --parallel             use all threads (if built with TBB)
   --check                verify what is promised (by ours and plain)
   --output DIR           write the resulting mesh into this folder (OFF)

@@ -226,9 +226,7 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   const NamedParametersReference& np_reference = parameters::default_values())
 {
   namespace internal = Reference_constrained_optimization::internal;
-  return internal::optimize<ConcurrencyTag>(
-    mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
-    np_reference);
+  return internal::optimize<ConcurrencyTag>(mesh, reference, energy, np, np_reference);
 }
 
 /*!
@@ -282,9 +280,7 @@ Reference_constrained_optimization::Result reference_constrained_optimize(
   const NamedParametersReference& np_reference = parameters::default_values())
 {
   namespace internal = Reference_constrained_optimization::internal;
-  return internal::optimize<ConcurrencyTag>(
-    mesh, reference, energy, internal::read_loop_parameters(internal::cgal_parameters(np)), np,
-    np_reference, face_range);
+  return internal::optimize<ConcurrencyTag>(mesh, reference, energy, np, np_reference, face_range);
 }
 
 } // namespace CGAL

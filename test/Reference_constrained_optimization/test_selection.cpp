@@ -12,7 +12,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_rounds.h>
 
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -327,14 +326,12 @@ std::size_t test_growing(const Shape& shape, const std::string& name)
   std::size_t largest = 0;
   for(const double threshold : {0.02, 0.25, 10.})
     for(const int cap : {1, 3, 40, 100000})
-      for(const bool by_cost : {false, true})
+      for(const int exempt : {1, 70})
       {
         internal::Selection_parameters parameters;
         parameters.developability_threshold = threshold;
         parameters.maximum_patch_size = cap;
-        parameters.grows_by_cost = by_cost;
-        if(by_cost)
-          parameters.exempt_size = 1;
+        parameters.exempt_size = exempt;
         internal::Patch_selection selection(mesh, parameters);
         Random random(3);
         for(int trial = 0; trial < (std::min)(n, 12); ++trial)
@@ -420,7 +417,7 @@ void test_patches()
   RCO_CHECK(on_sphere > 200 && on_sphere < sphere.faces.size());
 }
 
-// with a halo without end there is one patch for each component
+// patches of a round are disjoint, and every component has one
 void test_rounds()
 {
   const Scope scope("rounds");
@@ -430,16 +427,15 @@ void test_rounds()
   parameters.maximum_patch_size = 20;
   internal::Patch_selection selection(mesh, parameters);
   selection.clear_visits();
-  for(const int halo : {0, (std::numeric_limits<int>::max)()})
-  {
-    internal::Patch_rounds rounds(mesh, halo);
-    std::vector<int> seeds(mesh.number_of_faces());
-    std::iota(seeds.begin(), seeds.end(), 0);
-    std::vector<char> is_untouched(seeds.size(), 1);
-    const std::size_t n =
-      rounds.select(seeds, is_untouched, selection, geometry_of(shape, mesh)).size();
-    RCO_CHECK(halo == 0 ? n > 2 : n == 2);
-  }
+  std::vector<int> seeds(mesh.number_of_faces()), count(seeds.size(), 0);
+  std::iota(seeds.begin(), seeds.end(), 0);
+  std::vector<char> is_untouched(seeds.size(), 1);
+  const auto patches =
+    internal::Patch_rounds(mesh).select(seeds, is_untouched, selection, geometry_of(shape, mesh));
+  RCO_CHECK_LESS_EQUAL(2, int(patches.size()));
+  for(const std::vector<int>& patch : patches)
+    for(const int f : patch)
+      RCO_CHECK_EQUAL(++count[f], 1);
 }
 
 void test_touched()

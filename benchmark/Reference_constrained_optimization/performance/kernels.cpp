@@ -8,7 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/numerics/Block_LDLT.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/On_surface_mover.h>
-#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/Located_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -58,24 +58,13 @@ Mesh_copy bumpy_torus(int columns, int rows)
 struct Scene
 {
   Mesh_copy copy = bumpy_torus(240, 96);
-  Reference_surface surface{copy};
   RCO::Minimum_angle_energy energy;
-  Element_set elements{energy, RCO::Energy_context(copy.mesh.face_begin,
-                                                   copy.mesh.corner_vertex,
-                                                   copy.points.size(),
-                                                   mean_edge_length(copy.mesh, copy.points),
-                                                   surface.area(),
-                                                   surface.area())};
-  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
+  Located_mesh located{copy, copy, energy, std::vector<char>(copy.points.size(), 1)};
+  const Reference_surface& surface = located.reference();
+  const Optimization_state& state = located.state();
   Face_geometry geometry;
 
-  Scene()
-  {
-    RCO::Result result;
-    state.is_free.assign(copy.points.size(), 1);
-    locate_on_reference(copy.points, surface, state, result);
-    geometry.update(copy.mesh, copy.points);
-  }
+  Scene() { geometry.update(copy.mesh, copy.points); }
 
   Patch patch(int size) const
   {
@@ -107,36 +96,13 @@ void cone_proxy(benchmark::State& state)
   }
 }
 
-void growing(benchmark::State& state, bool grows_by_cost)
-{
-  Selection_parameters parameters;
-  parameters.maximum_patch_size = int(state.range(0));
-  parameters.grows_by_cost = grows_by_cost;
-  Patch_selection selection(scene().copy.mesh, parameters);
-  int seed = 0;
-  for(auto _ : state)
-  {
-    benchmark::DoNotOptimize(
-      selection.grow(seed, scene().geometry, [](int) { return false; }).size());
-    seed = (seed + 977) % scene().copy.mesh.number_of_faces();
-  }
-}
-
-std::vector<Vector_3> points_of(const Patch& patch)
-{
-  std::vector<Vector_3> points;
-  for(const Located_vertex& p : patch.located)
-    points.push_back(p.position);
-  return points;
-}
-
 enum class Method { conformal, conformal_of_cgal, mean_value, tutte };
 
 // what a map to a convex border distorts is repaired by descent
 void flattening(benchmark::State& state, Method method)
 {
   const Patch patch = scene().patch(int(state.range(0)));
-  const std::vector<Vector_3> points = points_of(patch);
+  const std::vector<Vector_3> points = patch.positions();
   Flattening_parameters parameters;
   parameters.use_conformal = method == Method::conformal || method == Method::conformal_of_cgal;
   parameters.use_conformal_of_cgal = method == Method::conformal_of_cgal;
@@ -174,7 +140,7 @@ void flattening_as_rigid_as_possible(benchmark::State& state)
 
 std::vector<Vector_2> flat(const Patch& patch)
 {
-  return Patch_flattener().flatten(patch.triangles(), points_of(patch)).positions;
+  return Patch_flattener().flatten(patch.triangles(), patch.positions()).positions;
 }
 
 // one step from the start, its pattern being analyzed
@@ -346,8 +312,6 @@ void patch_sizes(benchmark::internal::Benchmark* benchmark)
 }
 
 BENCHMARK(cone_proxy)->Arg(1000);
-BENCHMARK_CAPTURE(growing, by_distance, false)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(growing, by_cost, true)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(flattening, conformal, Method::conformal)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(flattening, conformal_of_cgal, Method::conformal_of_cgal)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(flattening, mean_value, Method::mean_value)->Apply(patch_sizes);

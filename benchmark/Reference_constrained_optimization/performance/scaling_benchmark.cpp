@@ -98,10 +98,11 @@ Mesh split_in_four(const Mesh& coarse)
 
 bool run(const Command_line& arguments, Row& row)
 {
-  const Common_settings s(arguments);
+  Common_settings s(arguments);
   if(s.parallel || s.check || !s.output_folder.empty())
     throw std::invalid_argument("--parallel, --check and --output have no meaning here");
   const int level = arguments.number("--level", 0), threads = arguments.number("--threads", 1);
+  s.parallel = threads > 1;
 #ifdef CGAL_LINKED_WITH_TBB
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::size_t(threads));
@@ -125,7 +126,7 @@ bool run(const Command_line& arguments, Row& row)
   const RCO::Result r = optimize(
     mesh, mesh, RCO::Minimum_angle_energy(),
     with_common_settings(CGAL::parameters::developability_threshold(s.developability), s, visitor),
-    s.method, threads > 1);
+    s);
   const double memory = peak_memory();
   add_angles(row, mesh, "_out");
   add_iterations(row, r);

@@ -158,7 +158,7 @@ bool run(const Command_line& arguments, Row& row)
   {
     const auto optimize_with = [&](const auto& own) {
       return optimize(mesh, pair.reference, RCO::Compatible_remeshing_energy(pair.source),
-                      with_common_settings(own, s, visitor), s.method, s.parallel);
+                      with_common_settings(own, s, visitor), s);
     };
     const auto own = CGAL::parameters::developability_threshold(s.developability);
     const double bound = relative_drift_bound(arguments);

@@ -8,9 +8,9 @@
 #include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
-#include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
-#include <CGAL/Reference_constrained_optimization/internal/rounds/Loop_parameters.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/Located_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
+#include <CGAL/Reference_constrained_optimization/internal/rounds/patch_solver.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
@@ -77,14 +77,6 @@ void write(const std::string& file, const std::vector<int>& numbers)
     out << n << '\n';
 }
 
-std::vector<Vector_3> positions(const Patch& patch)
-{
-  std::vector<Vector_3> points;
-  for(const Located_vertex& p : patch.located)
-    points.push_back(p.position);
-  return points;
-}
-
 std::vector<Vector_3> in_space(const std::vector<Vector_2>& u)
 {
   std::vector<Vector_3> points;
@@ -105,7 +97,7 @@ std::vector<Vector_2> visit(Patch& patch,
   limits.density = std::numeric_limits<double>::infinity();
   std::vector<Vector_2> u = mover.flattening().positions;
   bool proposes = true;
-  for(int pass = 0; proposes && pass < Loop_parameters().proposals_per_patch; ++pass)
+  for(int pass = 0; proposes && pass < Patch_solver::flattened_proposals; ++pass)
   {
     if(!backtracking
           .decide(patch, Patch_samples(), state, mover, energy.density(), limits, pass == 0)
@@ -130,16 +122,9 @@ void write_stages(const std::string& mesh_file,
     read_measured_mesh(read(mesh_file), CGAL::parameters::default_values(), "mesh");
   if(seed < 0 || seed >= copy.mesh.number_of_faces())
     throw std::runtime_error("there is no face " + std::to_string(seed));
-  Reference_surface surface(copy);
   const RCO::Minimum_angle_energy energy;
-  const Element_set elements(
-    energy,
-    RCO::Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(),
-                        mean_edge_length(copy.mesh, copy.points), surface.area(), surface.area()));
-  Optimization_state state{copy.mesh, surface, elements, {}, {}, {}, {}};
-  state.is_free.assign(copy.points.size(), 1);
-  RCO::Result unused;
-  locate_on_reference(copy.points, surface, state, unused);
+  Located_mesh located(copy, copy, energy, std::vector<char>(copy.points.size(), 1));
+  const Optimization_state& state = located.state();
 
   Face_geometry geometry;
   geometry.update(copy.mesh, copy.points);
@@ -160,14 +145,14 @@ void write_stages(const std::string& mesh_file,
   write(folder + "/patch_regions.txt", patch_region);
 
   Patch patch = Patch_builder(copy.mesh).build(faces, state);
-  write(folder + "/patch.off", patch.polygons, positions(patch));
-  Flattened_mover mover(surface, Flattened_mover::Parameters());
+  write(folder + "/patch.off", patch.polygons, patch.positions());
+  Flattened_mover mover(state.reference);
   if(!mover.propose(patch, Patch_samples(), energy.density()))
     throw std::runtime_error("nothing can be made of the patch around this seed");
   write(folder + "/patch_flat.off", patch.polygons, in_space(mover.flattening().positions));
   write(folder + "/patch_optimized.off", patch.polygons,
         in_space(visit(patch, state, energy, mover)));
-  write(folder + "/patch_mapped.off", patch.polygons, positions(patch));
+  write(folder + "/patch_mapped.off", patch.polygons, patch.positions());
   std::cout << faces.size() << " faces, flattened with a mean density of "
             << mover.flattening().distortion << " (4: isometric)" << std::endl;
 

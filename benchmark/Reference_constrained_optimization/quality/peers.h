@@ -16,7 +16,6 @@
 #include <CGAL/reference_constrained_optimize.h>
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -80,11 +79,8 @@ inline std::map<std::string, Peer> all_peers()
      }},
     {"plain",
      [](const Mesh& m, double limit) {
-       const double infinity = std::numeric_limits<double>::infinity();
-       return peers::optimize(m, CGAL::parameters::use_on_surface_steps(false)
-                                   .use_finishing_stage(false)
-                                   .drift_bound(infinity)
-                                   .maximum_running_time(limit));
+       return peers::optimize(
+         m, CGAL::parameters::use_on_surface_steps(false).maximum_running_time(limit));
      }},
     {"stars1", [](const Mesh& m, double) { return peers::smooth_stars(m, 1); }},
     {"stars10", [](const Mesh& m, double) { return peers::smooth_stars(m, 10); }},

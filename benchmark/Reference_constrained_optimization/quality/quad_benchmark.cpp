@@ -68,7 +68,7 @@ RCO::Result optimize_quads(Mesh& mesh,
     with_common_settings(CGAL::parameters::developability_threshold(s.developability), s, visitor)
       .relax_constraints(arguments.has("--relax-borders"));
   const auto optimize_for = [&](const auto& energy) {
-    return optimize(mesh, reference, energy, np, s.method, s.parallel);
+    return optimize(mesh, reference, energy, np, s);
   };
   const std::string energy = arguments.text("--energy", "regularity");
   const bool is_regularity = energy == "regularity";
@@ -158,8 +158,8 @@ bool run(const Command_line& arguments, Row& row)
   add_flips_and_folds(row, {in.defects, out.defects});
   add_drift(row, in.drift, "_in");
   add_drift(row, out.drift, "_out");
-  row.add("distance_to_reference_in",
-          r.largest_initial_distance / in.drift.reference_mean_edge_length);
+  row.add("distance_to_reference_in", RCO::distance_to_reference(input, reference).maximum /
+                                        in.drift.reference_mean_edge_length);
   row.add("energy_in", r.initial_energy);
   row.add("energy_out", r.final_energy);
   add_iterations(row, r);

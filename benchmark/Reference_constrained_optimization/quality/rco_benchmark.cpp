@@ -104,7 +104,7 @@ bool run(const Command_line& arguments, Row& row)
   const auto optimize_with = [&](const auto& own) {
     return optimize(mesh, reference, RCO::Minimum_angle_energy(arguments.number("--exponent", 1.)),
                     with_common_settings(own, s, visitor).edge_is_constrained_map(is_constrained),
-                    s.method, s.parallel);
+                    s);
   };
   const auto own = CGAL::parameters::developability_threshold(s.developability)
                      .use_finishing_stage(arguments.number("--finishing", 1) != 0);
@@ -125,8 +125,8 @@ bool run(const Command_line& arguments, Row& row)
       "certified_drift",
       RCO::certified_drift(mesh, reference, 0.02 * drift.reference_mean_edge_length).upper_bound() /
         drift.reference_mean_edge_length);
-  add_flips_and_folds(row, {{r.initial_number_of_flips, r.initial_number_of_fold_edges},
-                            {r.number_of_flips, r.number_of_fold_edges}});
+  add_flips_and_folds(
+    row, {RCO::orientation_defects(input, reference), RCO::orientation_defects(mesh, reference)});
   add_iterations(row, r);
 
   const double patches = double(r.number_of_patches);

@@ -205,30 +205,27 @@ void optimize(const FaceRange& range,
   const auto finish = [&]() {
     round_to_user_coordinates(frame, state);
     Global_measure final = measure_all();
-    if(!loop_parameters.accepts_all)
-    {
-      Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices);
-      const auto is_worse = [&]() {
-        return final.defects() > initial.defects() ||
-               (final.defects() == initial.defects() && final.energy > initial.energy) ||
-               (defect_repair.has_restored_vertices() &&
-                (defect_repair.has_lowered_angles() ||
-                 result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
-                                           result.initial_drift)));
-      };
-      const auto run_repair = [&]() {
-        defect_repair.run();
-        if(!defect_repair.has_restored_vertices())
-          return;
-        final = measure_all();
-        if(std::isfinite(result.drift_bound))
-          result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
-      };
+    Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices);
+    const auto is_worse = [&]() {
+      return final.defects() > initial.defects() ||
+             (final.defects() == initial.defects() && final.energy > initial.energy) ||
+             (defect_repair.has_restored_vertices() &&
+              (defect_repair.has_lowered_angles() ||
+               result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
+                                         result.initial_drift)));
+    };
+    const auto run_repair = [&]() {
+      defect_repair.run();
+      if(!defect_repair.has_restored_vertices())
+        return;
+      final = measure_all();
+      if(std::isfinite(result.drift_bound))
+        result.drift = drift_of<ConcurrencyTag>(state, result.drift_bound);
+    };
+    run_repair();
+    // faces next to restored vertices may be stretched
+    while(is_worse() && defect_repair.enlarge(densities))
       run_repair();
-      // faces next to restored vertices may be stretched
-      while(is_worse() && defect_repair.enlarge(densities))
-        run_repair();
-    }
     write_points(mesh, vpm, copy.points, state, frame);
     write_locations(mesh, reference, np, state);
     result.final_energy = final.energy / number_of_elements;
@@ -255,9 +252,7 @@ void optimize(const FaceRange& range,
   finish();
 }
 
-// Implementation of `CGAL::reference_constrained_optimize()` with parameters that were read:
-// `loop_parameters` also has options that the public function does not offer. Of the named parameters only
-// the maps and the visitor are used.
+// Implementation of `CGAL::reference_constrained_optimize()`.
 template <typename ConcurrencyTag,
           typename PolygonMesh,
           typename ReferenceMesh,
@@ -268,7 +263,6 @@ template <typename ConcurrencyTag,
 Result optimize(PolygonMesh& mesh,
                 const ReferenceMesh& reference,
                 const Energy& energy,
-                const Loop_parameters& loop_parameters,
                 const NamedParameters& np,
                 const NamedParametersReference& np_reference,
                 const FaceRange& range = FaceRange())
@@ -279,6 +273,7 @@ Result optimize(PolygonMesh& mesh,
 #endif
   const auto start = std::chrono::steady_clock::now();
   const auto& own_np = cgal_parameters(np);
+  const Loop_parameters loop_parameters = read_loop_parameters(own_np);
   auto visitor_parameter = parameters::choose_parameter(
     parameters::get_parameter(own_np, CGAL::internal_np::visitor), Default_visitor());
   auto& visitor = unwrap(visitor_parameter);

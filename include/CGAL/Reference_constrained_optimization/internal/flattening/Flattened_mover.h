@@ -37,18 +37,8 @@ namespace internal {
 class Flattened_mover
 {
 public:
-  struct Parameters
-  {
-    Flattening_parameters flattening;
-    bool use_surface_metric = true;
-    int newton_steps = 3; // per proposal
-  };
-
-  Flattened_mover(const Reference_surface& reference,
-                  const Parameters& parameters,
-                  Interruption* interruption = nullptr)
+  explicit Flattened_mover(const Reference_surface& reference, Interruption* interruption = nullptr)
     : m_reference(reference),
-      m_parameters(parameters),
       m_interruption(interruption),
       m_flattener(interruption),
       m_optimizer(interruption)
@@ -59,10 +49,7 @@ public:
   {
     const auto start = std::chrono::steady_clock::now();
     const Indexed_mesh& triangles = patch.triangles();
-    m_points.clear();
-    for(const Located_vertex& p : patch.located)
-      m_points.push_back(p.position);
-    m_flattening = m_flattener.flatten(triangles, m_points, m_parameters.flattening);
+    m_flattening = m_flattener.flatten(triangles, patch.positions());
     const bool is_flat = m_flattening.path != Flattening_path::failed;
     m_overlaps = is_flat && !has_simple_border(triangles, m_flattening.positions);
     m_flattening_time = seconds_since(start);
@@ -132,8 +119,8 @@ private:
   {
     m_target = m_flattening.positions;
     const Patch_elements<Density> elements{density, patch.elements};
-    return m_optimizer.minimize(m_problem, elements, m_target, m_parameters.newton_steps, 1e-8)
-             .steps > 0;
+    const int newton_steps = 3;
+    return m_optimizer.minimize(m_problem, elements, m_target, newton_steps, 1e-8).steps > 0;
   }
 
   void set_up_problem(const Patch& patch, const Patch_samples& samples)
@@ -148,11 +135,6 @@ private:
     {
       m_problem.triples.push_back(e.vertices);
       m_problem.rest_inverse.push_back(e.rest_inverse);
-      if(!m_parameters.use_surface_metric)
-      {
-        m_problem.metric.push_back(Eigen::Matrix2d::Identity());
-        continue;
-      }
       const Located_vertex &a = patch.located[e.vertices[0]], &b = patch.located[e.vertices[1]],
                            &c = patch.located[e.vertices[2]];
       m_problem.metric.push_back(surface_metric(
@@ -234,13 +216,11 @@ private:
   }
 
   const Reference_surface& m_reference;
-  Parameters m_parameters;
   Interruption* m_interruption;
   Patch_flattener m_flattener;
   Projected_newton m_optimizer;
   Planar_problem m_problem;
   Flattening m_flattening;
-  std::vector<Vector_3> m_points;
   std::vector<Vector_2> m_target;
   std::vector<int> m_start_triangle;
   std::vector<double> m_sliding_scale;

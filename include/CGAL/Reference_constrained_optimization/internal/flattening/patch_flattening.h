@@ -56,9 +56,6 @@ struct Flattening_parameters
   double target_distortion = 4.05;
   int maximum_descent_steps = 25;
   double descent_tolerance = 1e-2; // the relative decrease that ends the minimization
-  // the same while the distortion is above `far_distortion`: folds open slowly at first
-  double far_tolerance = 1e-6;
-  double far_distortion = 5;
 };
 
 // Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
@@ -263,9 +260,8 @@ private:
     double current_distortion = distortion(triangles, u);
     for(int step = 0; step < parameters.maximum_descent_steps; ++step)
     {
-      const double tolerance = current_distortion > parameters.far_distortion
-                                 ? parameters.far_tolerance
-                                 : parameters.descent_tolerance;
+      // folds open slowly at first
+      const double tolerance = current_distortion > 5 ? 1e-6 : parameters.descent_tolerance;
       const Projected_newton::Outcome outcome =
         m_optimizer.minimize(problem, Symmetric_Dirichlet_density(), u, 1, tolerance);
       const double decrease = outcome.initial_energy - outcome.final_energy;

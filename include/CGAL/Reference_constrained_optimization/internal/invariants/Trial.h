@@ -114,7 +114,6 @@ struct Step_limits
 {
   double density = 0; // no step may raise the density of an element above it, or further above
   double cosine = 1;  // no step may raise that of an angle above it, or further above
-  bool accepts_all = false; // proposals are accepted without a test
 };
 
 // An invariant is a rule that every accepted step obeys. It derives from this class and has

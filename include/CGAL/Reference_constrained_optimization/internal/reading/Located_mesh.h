@@ -14,8 +14,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A mesh with the point of a reference and the normal there for every vertex: the initial state of an
-// optimization without free vertices.
+// A mesh with the point of a reference and the normal there for every vertex: the state in which an
+// optimization starts.
 class Located_mesh
 {
   // a state has elements, but the measures do not depend on them
@@ -29,9 +29,26 @@ class Located_mesh
   };
 
 public:
-  Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference) : Located_mesh(copy, reference, 0)
+  // without free vertices
+  Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference)
+    : Located_mesh(copy, reference, One_element_per_face(), std::vector<char>(copy.points.size()))
+  {}
+
+  template <typename Energy>
+  Located_mesh(const Mesh_copy& copy,
+               const Mesh_copy& reference,
+               const Energy& energy,
+               const std::vector<char>& is_free)
+    : m_surface(reference),
+      m_elements(energy,
+                 Energy_context(copy.mesh.face_begin,
+                                copy.mesh.corner_vertex,
+                                copy.points.size(),
+                                mean_edge_length(copy.mesh, copy.points),
+                                surface_area(copy.mesh, copy.points),
+                                m_surface.area())),
+      m_state{copy.mesh, m_surface, m_elements, {}, is_free}
   {
-    m_state.is_free.assign(copy.points.size(), 0); // no vertex is moved
     Result unused;
     locate_on_reference<CGAL::Sequential_tag>(copy.points, m_surface, m_state, unused);
   }
@@ -41,15 +58,9 @@ public:
   // reversed where it is oriented against the mesh
   const Reference_surface& reference() const { return m_surface; }
 
-private:
-  Located_mesh(const Mesh_copy& copy, const Mesh_copy& reference, int)
-    : m_surface(reference),
-      m_elements(
-        One_element_per_face(),
-        Energy_context(copy.mesh.face_begin, copy.mesh.corner_vertex, copy.points.size(), 1, 1, 1)),
-      m_state{copy.mesh, m_surface, m_elements, {}, {}, {}, {}}
-  {}
+  Optimization_state& state() { return m_state; }
 
+private:
   Reference_surface m_surface;
   Element_set m_elements;
   Optimization_state m_state;

@@ -5,7 +5,6 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_LOOP_PARAMETERS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_LOOP_PARAMETERS_H
 
-#include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_selection.h>
 
 #include <algorithm>
@@ -25,17 +24,11 @@ struct Loop_parameters
   double energy_tolerance = 4e-3;
   double maximum_running_time = std::numeric_limits<double>::infinity(); // seconds
   unsigned int random_seed = 0;
-  int proposals_per_patch = 2; // if flattened; each after the first requires a decrease by the last
-  int on_surface_proposals = 3;
   bool use_finishing_stage = true;
-  int halo = 4; // rings around a patch of a round in which no other one starts
   Selection_parameters selection;
-  Flattened_mover::Parameters mover;
   bool relax_constraints = false;
   bool detect_features = true; // where the caller constrains no edges
   bool use_on_surface_steps = true;
-  bool use_active_set = true; // else every iteration visits the whole mesh
-  bool accepts_all = false;   // every proposal is accepted
 };
 
 // Sizes are counted in triangles: a quad is two.
@@ -69,16 +62,6 @@ inline Selection_parameters with_patch_size(const Loop_parameters& parameters,
     selection.maximum_patch_size = parameters.use_on_surface_steps && has_angle_criterion
                                      ? patch_size(mesh, 1.2, 150)
                                      : patch_size(mesh, 4.5, 400);
-  return selection;
-}
-
-// for flattened patches around bad elements
-inline Selection_parameters with_small_patch_size(Selection_parameters selection,
-                                                  const Indexed_mesh& mesh)
-{
-  const int size = triangles_to_faces(mesh, 200);
-  if(selection.maximum_patch_size == 0 || selection.maximum_patch_size > size)
-    selection.maximum_patch_size = size;
   return selection;
 }
 

@@ -50,7 +50,6 @@ public:
   struct Decision
   {
     bool accepted = false;
-    bool is_final = false; // accepted without a test, also at the commit
     Patch_measure before, after;
   };
 
@@ -90,10 +89,9 @@ public:
       measure(trial, density);
       decision.after = sum_up(trial);
       violating.clear();
-      if(hold(trial, decision.after, violating) || limits.accepts_all)
+      if(hold(trial, decision.after, violating))
       {
         decision.accepted = true;
-        decision.is_final = limits.accepts_all;
         m_accepted = decision.after;
         return decision;
       }

@@ -63,7 +63,7 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
                                                 : shared_energy(state, s) - shared_before -
                                                     (after.shared_energy - before.shared_energy);
   const bool is_better = change < 0 || (change == 0 && after.energy + rise < before.energy);
-  if(!is_better && !s.decision.is_final)
+  if(!is_better)
   {
     exchange(state, s, s.outer_vertices);
     s.decision.accepted = false;

@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_PATCH_SOLVER_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_PATCH_SOLVER_H
 
+#include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/Cluster_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/On_surface_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/Pattern_search_mover.h>
@@ -82,18 +83,19 @@ struct Solved_patch
 class Patch_solver
 {
 public:
+  // the largest number for a patch; each after the first requires a decrease by the last
+  static constexpr int flattened_proposals = 2, on_surface_proposals = 3;
+
   Patch_solver(const Optimization_state& state,
                const Loop_parameters& parameters,
                Interruption* interruption)
     : m_interruption(interruption),
       m_builder(state.mesh),
-      m_flattened_mover(state.reference, parameters.mover, interruption),
+      m_flattened_mover(state.reference, interruption),
       m_on_surface_mover(state.reference, 1, interruption),
       m_pattern_search_mover(state.reference, interruption),
       m_cluster_mover(state.reference),
       m_backtracking(interruption),
-      m_flattened_proposals(parameters.proposals_per_patch),
-      m_on_surface_proposals(parameters.on_surface_proposals),
       m_tolerance(parameters.energy_tolerance)
   {}
 
@@ -122,7 +124,7 @@ public:
     s.is_flattened = moves == Moves::flattened;
     if(s.is_flattened)
     {
-      improve(m_flattened_mover, m_flattened_proposals, m_tolerance, state, density, settings,
+      improve(m_flattened_mover, flattened_proposals, m_tolerance, state, density, settings,
               samples, s);
       s.path = m_flattened_mover.flattening().path;
       s.overlaps = m_flattened_mover.overlaps();
@@ -140,7 +142,7 @@ public:
     {
       // its steps are cheap: a small decrease justifies another
       m_on_surface_mover.set_strain_regularization(settings.strain_regularization);
-      improve(m_on_surface_mover, m_on_surface_proposals, 0.25 * m_tolerance, state, density,
+      improve(m_on_surface_mover, on_surface_proposals, 0.25 * m_tolerance, state, density,
               settings, samples, s);
       s.unrealized_decrease = (1 - s.accepted_fraction) * m_on_surface_mover.predicted_decrease();
     }
@@ -241,7 +243,6 @@ private:
   Pattern_search_mover m_pattern_search_mover;
   Cluster_mover m_cluster_mover;
   Backtracking m_backtracking;
-  int m_flattened_proposals, m_on_surface_proposals;
   double m_tolerance;
 };
 

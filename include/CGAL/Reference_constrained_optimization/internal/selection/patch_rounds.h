@@ -15,12 +15,12 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Rounds of face-disjoint patches. No patch of a round starts within `halo` rings of another one, as it
-// would remain small. With a halo as large as the mesh a round has one patch of each connected component.
+// Rounds of face-disjoint patches. No patch of a round starts within four rings of another one, as it
+// would remain small.
 class Patch_rounds
 {
 public:
-  Patch_rounds(const Indexed_mesh& mesh, int halo) : m_mesh(mesh), m_halo(halo) {}
+  explicit Patch_rounds(const Indexed_mesh& mesh) : m_mesh(mesh) {}
 
   // grows face-disjoint patches from untouched seeds until the mesh is full; drops the seeds that
   // are touched
@@ -86,7 +86,7 @@ private:
     for(const int f : patch)
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         m_is_near[m_mesh.corner_vertex[c]] = 1;
-    for(int ring = 0; ring < m_halo && !front.empty(); ++ring)
+    for(int ring = 0; ring < 4 && !front.empty(); ++ring)
     {
       std::vector<int> next;
       for(const int v : front)
@@ -101,7 +101,6 @@ private:
   }
 
   const Indexed_mesh& m_mesh;
-  int m_halo;
   std::vector<char> m_is_taken, m_is_near;
 };
 

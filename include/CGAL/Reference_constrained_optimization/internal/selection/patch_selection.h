@@ -23,9 +23,6 @@ struct Selection_parameters
   double developability_threshold = 0.25; // epsilon_d
   int maximum_patch_size = 0;             // in faces; 0: chosen by the size of the mesh
   int exempt_size = 70;                   // the first faces of a patch need not fit the proxy
-  // As in the paper: the face of least cost comes next, and the proxy is that of the seed. The first face
-  // above the threshold then ends the patch, since all others cost as much.
-  bool grows_by_cost = false;
   // else a face may be at the boundary of the only patch that contains it
   bool requires_interior = true;
 };
@@ -67,9 +64,31 @@ struct Face_geometry
   }
 };
 
-// Grows nearly developable disks (paper 3.3). Unless `grows_by_cost` is set the queue is ordered by
-// the length of the path from the seed rather than by the fitting cost, which is kept as a filter:
-// that makes compact patches, with a larger share of faces away from the boundary.
+// The best fit among the 1-rings of a face's vertices.
+inline Cone_proxy initial_proxy(const Indexed_mesh& mesh, const Face_geometry& geometry, int seed)
+{
+  Cone_proxy best;
+  bool first = true;
+  for(int c = mesh.face_begin[seed]; c < mesh.face_begin[seed + 1]; ++c)
+  {
+    const int v = mesh.corner_vertex[c];
+    Cone_proxy_fit fit;
+    for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
+    {
+      const int f = mesh.corner_face[mesh.vertex_corners[k]];
+      fit.add(geometry.normals[f], geometry.areas[f]);
+    }
+    const Cone_proxy proxy = fit.fit();
+    if(first || proxy.mean_cost < best.mean_cost)
+      best = proxy;
+    first = false;
+  }
+  return best;
+}
+
+// Grows nearly developable disks (paper 3.3). The queue is ordered by the length of the path from the seed
+// rather than by the fitting cost, which is kept as a filter: that makes compact patches, with a larger
+// share of faces away from the boundary.
 class Patch_selection
 {
 public:
@@ -87,7 +106,7 @@ public:
     ++m_stamp;
     std::vector<int> patch;
     Cone_proxy_fit fit;
-    Cone_proxy proxy = initial_proxy(seed, geometry);
+    Cone_proxy proxy = initial_proxy(m_mesh, geometry, seed);
     std::size_t next_fit = 128;
 
     const auto in_patch = [&](int f) { return m_face_stamp[f] == m_stamp; };
@@ -111,7 +130,7 @@ public:
       patch.push_back(f);
       m_face_stamp[f] = m_stamp;
       fit.add(geometry.normals[f], geometry.areas[f]);
-      if(!m_parameters.grows_by_cost && patch.size() == next_fit)
+      if(patch.size() == next_fit)
       {
         proxy = fit.fit();
         next_fit *= 2;
@@ -125,23 +144,23 @@ public:
         const int g = m_mesh.corner_face[o];
         if(in_patch(g) || is_taken(g))
           continue;
-        queue.push(Entry(m_parameters.grows_by_cost
-                           ? proxy.cost(geometry.normals[g])
-                           : entry.first + (geometry.centroids[f] - geometry.centroids[g]).norm(),
-                         g));
+        queue.push(Entry(entry.first + (geometry.centroids[f] - geometry.centroids[g]).norm(), g));
       }
     }
     return patch;
   }
 
-  // The faces of the last patch that need no further visit. These are the faces outside the 2-ring of its
+  // The faces of a patch that need no further visit. These are the faces outside the 2-ring of its
   // boundary (an edge of the mesh's own border is no boundary here), and always the seed. In regions as
   // thin as a few faces no face is ever outside: a face is also complete when all its vertices were inside
   // two patches since `clear_visits()`; and, unless `requires_interior` is set, when one of them is inside
   // this one.
   std::vector<int> touched(const std::vector<int>& patch)
   {
+    ++m_stamp;
     ++m_ring_stamp;
+    for(const int f : patch)
+      m_face_stamp[f] = m_stamp;
     m_ring.resize(m_mesh.number_of_vertices(), 0);
     m_visits.resize(m_mesh.number_of_faces(), 0);
     const auto in_patch = [&](int f) { return m_face_stamp[f] == m_stamp; };
@@ -184,28 +203,6 @@ public:
   void clear_visits() { m_visits.assign(m_mesh.number_of_faces(), 0); }
 
 private:
-  // the best fit among the 1-rings of the seed's vertices
-  Cone_proxy initial_proxy(int seed, const Face_geometry& geometry) const
-  {
-    Cone_proxy best;
-    bool first = true;
-    for(int c = m_mesh.face_begin[seed]; c < m_mesh.face_begin[seed + 1]; ++c)
-    {
-      const int v = m_mesh.corner_vertex[c];
-      Cone_proxy_fit fit;
-      for(int k = m_mesh.vertex_begin[v]; k < m_mesh.vertex_begin[v + 1]; ++k)
-      {
-        const int f = m_mesh.corner_face[m_mesh.vertex_corners[k]];
-        fit.add(geometry.normals[f], geometry.areas[f]);
-      }
-      const Cone_proxy proxy = fit.fit();
-      if(first || proxy.mean_cost < best.mean_cost)
-        best = proxy;
-      first = false;
-    }
-    return best;
-  }
-
   const Indexed_mesh& m_mesh;
   Selection_parameters m_parameters;
   std::vector<int> m_face_stamp, m_vertex_stamp, m_ring, m_visits;

@@ -72,16 +72,11 @@ public:
         keep_near_bad<ConcurrencyTag>(m_state, m_visits.densities(), settings.bad_density,
                                       moved); // everything else has converged
       const bool moves = std::find(moved.begin(), moved.end(), char(1)) != moved.end();
-      // without a test the energy may rise, which is no convergence
-      const bool rises = parameters.accepts_all && has_decreased(after.energy, before.energy);
       before = after;
       if(m_visits.advance_densities(before))
         m_is_active = m_visits.free_faces();
-      else if(moves && (repairs || falls || rises))
-      {
-        if(parameters.use_active_set)
-          m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
-      }
+      else if(moves && (repairs || falls))
+        m_is_active = faces_around<ConcurrencyTag>(mesh, moved, 2);
       else if((!has_decreased(after.capped_energy + progress.unrealized_decrease,
                               after.capped_energy) ||
                !(has_smaller_patches ||
@@ -113,7 +108,7 @@ private:
   bool visit_active()
   {
     if(!m_visits.parameters.use_on_surface_steps)
-      return m_visits.flatten(m_is_active, m_visits.selection);
+      return m_visits.flatten(m_is_active);
     std::vector<char> is_selected;
     std::vector<std::vector<int>> patches;
     const std::size_t iteration = m_visits.result.number_of_iterations;
@@ -128,8 +123,7 @@ private:
           is_selected = faces_to_flatten();
       },
       [&]() { patches = m_visits.divide(m_is_active); });
-    return (!flattens || m_visits.flatten(is_selected, m_visits.selection)) &&
-           !m_visits.interruption.should_stop() &&
+    return (!flattens || m_visits.flatten(is_selected)) && !m_visits.interruption.should_stop() &&
            m_visits.round_solver.solve(patches, Moves::on_surface, m_visits.densities(),
                                        m_visits.settings);
   }

@@ -52,7 +52,6 @@ public:
       interruption(interruption_),
       has_angle_criterion(state_.elements.criterion() == Element_criterion::smallest_angle),
       selection(state_.mesh, with_patch_size(parameters_, state_.mesh, has_angle_criterion)),
-      small_selection(state_.mesh, with_small_patch_size(parameters_.selection, state_.mesh)),
       partition(state_.mesh,
                 on_surface_patch_size(parameters_.selection, state_.mesh),
                 largest_patch_size(parameters_.selection)),
@@ -62,9 +61,8 @@ public:
       m_small_partition(state_.mesh,
                         small_patch_size(parameters_.selection, state_.mesh),
                         largest_patch_size(parameters_.selection)),
-      m_rounds(state_.mesh, parameters_.halo)
+      m_rounds(state_.mesh)
   {
-    settings.limits.accepts_all = parameters.accepts_all;
     settings.strain_regularization = largest_regularization;
   }
 
@@ -134,7 +132,7 @@ public:
   }
 
   // visits the selected faces in flattened patches, until all are touched
-  bool flatten(const std::vector<char>& is_selected, Patch_selection& chosen)
+  bool flatten(const std::vector<char>& is_selected)
   {
     const Indexed_mesh& mesh = state.mesh;
     std::vector<int> seeds;
@@ -144,7 +142,7 @@ public:
     for(std::size_t i = seeds.size(); i > 1; --i)
       std::swap(seeds[i - 1], seeds[m_random.get_int(0, int(i))]);
     m_is_untouched = is_selected;
-    chosen.clear_visits();
+    selection.clear_visits();
 
     while(true)
     {
@@ -152,7 +150,7 @@ public:
         return false;
       const auto start = std::chrono::steady_clock::now();
       const std::vector<std::vector<int>> patches =
-        m_rounds.select(seeds, m_is_untouched, chosen, round_solver.geometry(), &interruption);
+        m_rounds.select(seeds, m_is_untouched, selection, round_solver.geometry(), &interruption);
       result.times.selection += seconds_since(start);
       if(patches.empty())
         return true;
@@ -194,7 +192,7 @@ public:
   Interruption& interruption;
   // whether the criterion for the worst elements is the smallest angle
   const bool has_angle_criterion;
-  Patch_selection selection, small_selection;
+  Patch_selection selection;
   Patch_partition partition;
   Round_solver<ConcurrencyTag, Visitor> round_solver;
   Solver_settings settings;

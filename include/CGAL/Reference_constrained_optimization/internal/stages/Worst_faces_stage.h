@@ -43,8 +43,7 @@ worst_faces(const Optimization_state& state, const Density& density, double bad)
 }
 
 // Optimizes the worst faces separately, as long as they improve: by Newton steps on the surface in small
-// patches around them, and where these do not improve them, by a pattern search. Without steps on the
-// surface small patches are flattened instead.
+// patches around them, and where these do not improve them, by a pattern search.
 template <typename Visits>
 class Worst_faces_stage
 {
@@ -64,7 +63,6 @@ public:
   // false if it was cut short
   bool run()
   {
-    const bool use_on_surface_steps = m_visits.parameters.use_on_surface_steps;
     const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
     m_searched_density.assign(m_state.mesh.number_of_faces(), 0);
@@ -78,18 +76,13 @@ public:
       for(const std::pair<double, int>& d : worst)
         after += std::log(d.first / m_bad);
       // a search improves much, or nothing
-      const double enough =
-        use_on_surface_steps ? 0.9 * before : before - 0.01 * double(worst.size());
-      if(!(after < enough))
+      if(!(after < 0.9 * before))
         return true;
       before = after;
       double& largest = m_visits.settings.limits.density; // no element may end above it
       largest = (std::min)(largest, worst.front().first);
       m_visits.settings.search_density = std::numeric_limits<double>::infinity();
-      const bool is_completed = use_on_surface_steps
-                                  ? move(worst)
-                                  : m_visits.flatten(marked(worst), m_visits.small_selection);
-      if(!is_completed)
+      if(!move(worst))
         return false;
     }
     return true;

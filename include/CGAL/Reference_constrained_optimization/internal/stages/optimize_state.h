@@ -30,14 +30,10 @@ void run_stages(Visits& visits)
     if(!visits.advance_densities(before))
       before = visits.remeasure();
   }
-  if(!iterations.run(before))
+  if(!iterations.run(before) || !parameters.use_on_surface_steps)
     return;
-  const bool finishes =
-    parameters.use_finishing_stage && parameters.use_on_surface_steps && visits.has_angle_criterion;
-  if(parameters.use_on_surface_steps || parameters.use_finishing_stage)
-    if(!Worst_faces_stage<Visits>(visits, finishes).run())
-      return;
-  if(finishes)
+  const bool finishes = parameters.use_finishing_stage && visits.has_angle_criterion;
+  if(Worst_faces_stage<Visits>(visits, finishes).run() && finishes)
     Finishing_stage<Visits>(visits).run();
 }
 

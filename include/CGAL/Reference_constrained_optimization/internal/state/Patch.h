@@ -31,6 +31,13 @@ struct Patch
   // per local vertex that slides: its neighbours on its line, in local vertices; else -1. Empty if
   // none slides.
   std::vector<std::array<int, 2>> line_neighbours;
+  std::vector<Vector_3> positions() const
+  {
+    std::vector<Vector_3> points;
+    for(const Located_vertex& v : located)
+      points.push_back(v.position);
+    return points;
+  }
   const Polyline_set* lines = nullptr;
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   // per face, and per corner, see Optimization_state; empty if no normal deviation is bounded
@@ -209,9 +216,7 @@ private:
 
   static void split(Patch& patch)
   {
-    std::vector<Vector_3> points;
-    for(const Located_vertex& p : patch.located)
-      points.push_back(p.position);
+    const std::vector<Vector_3> points = patch.positions();
     const auto split_polygon = [&](int f) { return split_flat(patch.polygons, points, f); };
     patch.split = split_mesh(patch.polygons, split_polygon, [&](int f) {
       if(patch.split_polygon.empty() || patch.split_polygon.back() != f)
