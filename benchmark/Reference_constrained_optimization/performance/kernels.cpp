@@ -96,7 +96,7 @@ void cone_proxy(benchmark::State& state)
   }
 }
 
-enum class Method { conformal, conformal_of_cgal, mean_value, tutte };
+enum class Method { conformal, mean_value, tutte };
 
 // what a map to a convex border distorts is repaired by descent
 void flattening(benchmark::State& state, Method method)
@@ -104,8 +104,7 @@ void flattening(benchmark::State& state, Method method)
   const Patch patch = scene().patch(int(state.range(0)));
   const std::vector<Vector_3> points = patch.positions();
   Flattening_parameters parameters;
-  parameters.use_conformal = method == Method::conformal || method == Method::conformal_of_cgal;
-  parameters.use_conformal_of_cgal = method == Method::conformal_of_cgal;
+  parameters.use_conformal = method == Method::conformal;
   parameters.use_mean_value = method != Method::tutte;
   Patch_flattener flattener;
   for(auto _ : state)
@@ -313,7 +312,6 @@ void patch_sizes(benchmark::internal::Benchmark* benchmark)
 
 BENCHMARK(cone_proxy)->Arg(1000);
 BENCHMARK_CAPTURE(flattening, conformal, Method::conformal)->Apply(patch_sizes);
-BENCHMARK_CAPTURE(flattening, conformal_of_cgal, Method::conformal_of_cgal)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(flattening, mean_value, Method::mean_value)->Apply(patch_sizes);
 BENCHMARK_CAPTURE(flattening, tutte, Method::tutte)->Apply(patch_sizes);
 BENCHMARK(flattening_as_rigid_as_possible)->Apply(patch_sizes);

@@ -9,7 +9,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/flattening/injectivity.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_optimization.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
-#include <CGAL/Reference_constrained_optimization/internal/numerics/conformal_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -21,7 +20,6 @@
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -48,7 +46,6 @@ struct Flattening
 struct Flattening_parameters
 {
   bool use_conformal = true;
-  bool use_conformal_of_cgal = false;       // by CGAL's solver, for comparison
   bool use_mean_value = true;               // on a convex border, before equal weights are tried
   double largest_conformal_distortion = 20; // distortion beyond which a conformal map is not used
   // A conformal map shrinks the ends of long patches, where results are then inaccurate: the distortion is
@@ -58,14 +55,16 @@ struct Flattening_parameters
   double descent_tolerance = 1e-2; // the relative decrease that ends the minimization
 };
 
-// Flattens a disk of triangles (paper 3.2): conformally, or onto a convex border with CGAL's
-// Surface_mesh_parameterization. What it returns is locally injective by an exact check. The border may
-// cross itself: points are located by walking within a sheet, which is not affected.
+// Flattens a disk of triangles (paper 3.2) with CGAL's Surface_mesh_parameterization: conformally, or onto a
+// convex border. What it returns is locally injective by an exact check. The border may cross itself: points
+// are located by walking within a sheet, which is not affected.
 class Patch_flattener
 {
   typedef CGAL::Simple_cartesian<double> Kernel;
   typedef CGAL::Surface_mesh<Kernel::Point_3> Surface_mesh;
-  typedef Surface_mesh::Property_map<Surface_mesh::Vertex_index, Kernel::Point_2> Uv_map;
+  typedef Surface_mesh::Vertex_index Vertex;
+  typedef Surface_mesh::Halfedge_index Halfedge;
+  typedef Surface_mesh::Property_map<Vertex, Kernel::Point_2> Uv_map;
 
 public:
   explicit Patch_flattener(Interruption* interruption = nullptr)
@@ -83,36 +82,30 @@ public:
 
     Flattening flattening;
     compute_shapes(triangles, points);
-    if(!(m_area > 0))
+    if(!(m_area > 0) || !build(triangles, points))
       return flattening;
-    m_mesh.clear();
 
-    const bool is_conformal =
-      parameters.use_conformal &&
-      (parameters.use_conformal_of_cgal
-         ? run(SMP::LSCM_parameterizer_3<Surface_mesh>(), triangles, points, flattening)
-         : m_conformal.flatten(triangles, m_shapes, extreme_vertices(points),
-                               flattening.positions)) &&
-      is_usable(triangles, flattening.positions);
+    const auto is_parameterized = [&](const auto& parameterizer) {
+      return run(parameterizer, flattening.positions) && is_usable(triangles, flattening.positions);
+    };
+    bool is_conformal =
+      parameters.use_conformal && is_parameterized(SMP::LSCM_parameterizer_3<Surface_mesh>());
     check(m_interruption);
     if(is_conformal)
+    {
       flattening.distortion = distortion(triangles, flattening.positions);
+      is_conformal = flattening.distortion < parameters.largest_conformal_distortion;
+    }
     const bool is_usable_start =
-      (is_conformal && flattening.distortion < parameters.largest_conformal_distortion) ||
+      is_conformal ||
       (parameters.use_mean_value && !m_has_degenerate_edge && // its weights are not defined there
-       run(SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>(),
-           triangles, points, flattening) &&
-       is_usable(triangles, flattening.positions)) ||
-      (run(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>(), triangles,
-           points, flattening) &&
-       is_usable(triangles, flattening.positions));
+       is_parameterized(
+         SMP::Mean_value_coordinates_parameterizer_3<Surface_mesh, Arc_length_border>())) ||
+      is_parameterized(SMP::Barycentric_mapping_parameterizer_3<Surface_mesh, Uniform_border>());
     if(!is_usable_start)
       return flattening;
     check(m_interruption);
-    flattening.path =
-      is_conformal && flattening.distortion < parameters.largest_conformal_distortion
-        ? Flattening_path::conformal
-        : Flattening_path::convex_border;
+    flattening.path = is_conformal ? Flattening_path::conformal : Flattening_path::convex_border;
     if(flattening.path == Flattening_path::convex_border ||
        flattening.distortion > parameters.target_distortion)
     {
@@ -150,32 +143,11 @@ private:
     }
   }
 
-  // the two ends of the patch along the longest side of its bounding box
-  static std::array<int, 2> extreme_vertices(const std::vector<Vector_3>& points)
-  {
-    Vector_3 low = points.front(), high = low;
-    for(const Vector_3& p : points)
-    {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    int axis;
-    (high - low).maxCoeff(&axis);
-    std::array<int, 2> result = {{0, 0}};
-    for(std::size_t i = 1; i < points.size(); ++i)
-    {
-      if(points[i](axis) < points[result[0]](axis))
-        result[0] = int(i);
-      if(points[i](axis) > points[result[1]](axis))
-        result[1] = int(i);
-    }
-    return result;
-  }
-
-  // CGAL's mesh of the patch, moved to the origin and scaled to unit area. False, and no mesh, if two
-  // edges join the same vertices, as diagonals of quads may do: such a patch has no injective flattening.
+  // CGAL's mesh of the patch, moved to the origin and scaled to unit area. False if there is no border, or
+  // if two edges join the same vertices, as diagonals of quads may do: such a patch has no injective flattening.
   bool build(const Indexed_mesh& triangles, const std::vector<Vector_3>& points)
   {
+    m_mesh.clear();
     m_mesh.reserve(Surface_mesh::size_type(points.size()),
                    Surface_mesh::size_type(3 * points.size()),
                    Surface_mesh::size_type(triangles.number_of_faces()));
@@ -185,45 +157,32 @@ private:
       const Vector_3 q = scale * (p - points.front());
       m_mesh.add_vertex(Kernel::Point_3(q.x(), q.y(), q.z()));
     }
-    typedef Surface_mesh::Vertex_index Vertex;
     for(int t = 0; t < triangles.number_of_faces(); ++t)
     {
       const int* v = &triangles.corner_vertex[3 * t];
       if(m_mesh.add_face(Vertex(v[0]), Vertex(v[1]), Vertex(v[2])) == Surface_mesh::null_face())
-      {
-        m_mesh.clear();
         return false;
-      }
     }
+    const auto halfedges = m_mesh.halfedges();
+    const auto border = std::find_if(halfedges.begin(), halfedges.end(),
+                                     [this](Halfedge h) { return m_mesh.is_border(h); });
+    if(border == halfedges.end())
+      return false;
+    m_border = *border;
     return true;
   }
 
-  // CGAL's mesh is built on first use by one of its parameterizers
   template <typename Parameterizer>
-  bool run(const Parameterizer& parameterizer,
-           const Indexed_mesh& triangles,
-           const std::vector<Vector_3>& points,
-           Flattening& flattening)
+  bool run(const Parameterizer& parameterizer, std::vector<Vector_2>& u)
   {
-    namespace SMP = CGAL::Surface_mesh_parameterization;
-    if(m_mesh.is_empty() && !build(triangles, points))
-      return false;
-    Surface_mesh::Halfedge_index border = Surface_mesh::null_halfedge();
-    for(const Surface_mesh::Halfedge_index h : m_mesh.halfedges())
-      if(m_mesh.is_border(h))
-      {
-        border = h;
-        break;
-      }
-    if(border == Surface_mesh::null_halfedge())
-      return false;
-    Uv_map uv = m_mesh.add_property_map<Surface_mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
-    const SMP::Error_code error = SMP::parameterize(m_mesh, parameterizer, border, uv);
-    flattening.positions.resize(m_mesh.number_of_vertices());
-    for(const Surface_mesh::Vertex_index v : m_mesh.vertices())
-      flattening.positions[v] = Vector_2(uv[v].x(), uv[v].y());
+    Uv_map uv = m_mesh.add_property_map<Vertex, Kernel::Point_2>("v:uv").first;
+    const auto error =
+      CGAL::Surface_mesh_parameterization::parameterize(m_mesh, parameterizer, m_border, uv);
+    u.clear();
+    for(const Vertex v : m_mesh.vertices())
+      u.emplace_back(uv[v].x(), uv[v].y());
     m_mesh.remove_property_map(uv);
-    return error == SMP::OK;
+    return error == CGAL::Surface_mesh_parameterization::OK;
   }
 
   // Checks injectivity and scales to the area of the patch. A conformal map may shrink the ends of long
@@ -293,8 +252,8 @@ private:
   }
 
   Interruption* m_interruption;
-  Conformal_flattening m_conformal;
   Surface_mesh m_mesh;
+  Halfedge m_border;
   std::vector<Eigen::Matrix2d> m_shapes;
   double m_area = 0;
   bool m_has_degenerate_edge = false;
