@@ -353,12 +353,45 @@ Case rim_case(int n)
   return test;
 }
 
+// a coin whose rim is a fillet of a few steps: there is no sharp edge
+Shape coin(int columns, int steps)
+{
+  Shape s = closed_cylinder(columns, steps, 1, 1);
+  for(Vector_3& p : s.points)
+  {
+    const double r = std::hypot(p.x(), p.y()), angle = (p.z() - 0.5) * pi, fillet = 0.1;
+    const double factor = r > 0 ? 1 + fillet * std::cos(angle) : 1;
+    p = Vector_3(factor * p.x(), factor * p.y(), fillet * std::sin(angle));
+  }
+  return s;
+}
+
+void test_rounded_parts()
+{
+  const Scope scope("rounded parts");
+  double least_volume = 1; // without the limits of parts
+  for(const int steps : {5, 7, 12})
+  {
+    const Shape start = coin(24, steps);
+    const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
+    RCO_CHECK_EQUAL(after.result.number_of_feature_edges, std::size_t(0));
+    const Outcome free = run(start, RCO::Minimum_angle_energy(), params::detect_features(false));
+    const Mesh before = make_mesh<Mesh>(start);
+    RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
+    RCO_CHECK_LESS(RCO::normal_deviation(make_mesh<Mesh>(after.shape), before).share_above_20,
+                   0.005);
+    least_volume = (std::min)(least_volume, volume(free.shape) / volume(start));
+  }
+  RCO_CHECK_LESS(least_volume, 0.97); // the test can fail
+}
+
 int main()
 {
   test_folds();
   test_keeping();
   test_strips();
   test_coarse_parts();
+  test_rounded_parts();
   const RCO::Quad_regularity_energy regularity(1);
   const RCO::Quad_angle_energy angle;
   for(const bool on_surface : {true, false})

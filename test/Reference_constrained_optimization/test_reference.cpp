@@ -589,6 +589,48 @@ void test_detection()
                   std::size_t(12 * n));
 }
 
+// a roof whose ridge turns by 100 degrees at one end and not at all at the other
+Shape fading_roof(int columns, int rows)
+{
+  Shape roof = plane_grid(columns, 2 * rows);
+  for(Vector_3& p : roof.points)
+    p = Vector_3(6 * p.x(), 2 * p.y() - 1,
+                 -std::abs(2 * p.y() - 1) * std::tan(50 * (1 - p.x()) * pi / 180));
+  return roof;
+}
+
+// A line that is sharp where it begins is followed to where it is hardly bent, and nothing else is taken.
+void test_fading_lines()
+{
+  const Scope scope("fading lines");
+  const int columns = 60;
+  Mesh mesh = make_mesh<Mesh>(fading_roof(columns, 6));
+  const auto map = detected(mesh).second;
+  for(const Mesh::Edge_index e : mesh.edges())
+  {
+    const auto p = mesh.point(mesh.vertex(e, 0)), q = mesh.point(mesh.vertex(e, 1));
+    const bool is_ridge = std::abs(p.y()) + std::abs(q.y()) < 1e-12;
+    const double angle = 100 * (1 - 0.5 * (p.x() + q.x()) / 6); // up to a degree
+    if(map[e])
+      RCO_CHECK(is_ridge && angle > 4);
+    else
+      RCO_CHECK(!is_ridge || angle < 10);
+  }
+}
+
+// Normal noise turns slivers, not the planes and lines of a part.
+void test_noisy_parts()
+{
+  const Scope scope("noisy parts");
+  for(const int columns : {10, 12, 24})
+  {
+    const Shape part = closed_cylinder(columns, 1, 1, 4);
+    const double edge = 2 * std::sin(pi / columns); // the shortest ones
+    for(const double noise : {0.01, 0.03})
+      RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), number_of_features(noisy(part, noise * edge)));
+  }
+}
+
 // Nowhere more than the default, nor than a part of what is there, and no jumps.
 void test_local_bounds()
 {
@@ -642,6 +684,8 @@ int main()
   test_face_in_direction("tetrahedron", tetrahedron());
   test_lines();
   test_detection();
+  test_fading_lines();
+  test_noisy_parts();
   test_local_bounds();
   return report();
 }
