@@ -31,7 +31,7 @@ struct Feature_report
   bool has_features = false;               ///< whether an edge was marked.
   std::size_t number_of_feature_edges = 0; ///< edges that were marked.
   /// the share of the area in faces with a coplanar neighbour (a dihedral angle below one degree), as in
-  /// tessellations of planes, cylinders and cones, however coarse; above 0.8 it is a part.
+  /// tessellations of planes, cylinders and cones, however coarse; above 0.85 it is a part.
   double flat_share = 0;
   /// length of the sharp edges (with a dihedral angle of 40 degrees or more) over the square root of the
   /// area; up to 0.25 it is not significant.
@@ -43,7 +43,7 @@ struct Feature_report
   /// part, above 0.4 too if `turned_share` is below 0.25.
   double sharp_share = 0;
   /// the same share of the areas beside these edges, of the smaller face each, which noise affects less;
-  /// above 0.4 it is a part if `turned_share` is below 0.45.
+  /// above 0.5 it is a part if `turned_share` is below 0.45.
   double sharp_area_share = 0;
   /// the share of edges with a dihedral angle above 20 degrees.
   double turned_share = 0;

@@ -209,10 +209,11 @@ void optimize(const FaceRange& range,
     const auto is_worse = [&]() {
       return final.defects() > initial.defects() ||
              (final.defects() == initial.defects() && final.energy > initial.energy) ||
+             ((defect_repair.has_restored_vertices() || state.angle_gain < 0) &&
+              defect_repair.has_lowered_angles()) ||
              (defect_repair.has_restored_vertices() &&
-              (defect_repair.has_lowered_angles() ||
-               result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
-                                         result.initial_drift)));
+              result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
+                                        result.initial_drift));
     };
     const auto run_repair = [&]() {
       defect_repair.run();

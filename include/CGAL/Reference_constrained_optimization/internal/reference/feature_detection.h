@@ -47,14 +47,15 @@ struct Feature_statistics
   // neither sharp nor small, or few have and most angles are small
   bool is_mechanical() const
   {
-    return amount() > 0.25 && (flat_share() > 0.8 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
-                               (sharp_area_share() > 0.4 && turned_share() < 0.45) ||
-                               (sharp_share() > 0.4 && turned_share() < 0.25));
+    return amount() > 0.25 &&
+           (flat_share() > 0.85 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
+            (sharp_area_share() > 0.5 && turned_share() < 0.45) ||
+            (sharp_share() > 0.4 && turned_share() < 0.25));
   }
   // planes and strips without a sharp edge: fillets of a few steps each
   bool is_rounded() const
   {
-    return flat_share() > 0.8 && area > 0 && bent_length / std::sqrt(area) > 0.25;
+    return flat_share() > 0.85 && area > 0 && bent_length / std::sqrt(area) > 0.25;
   }
 };
 

@@ -21,9 +21,12 @@ template <typename Visits>
 bool separate_clusters(Visits& visits)
 {
   typedef typename Visits::ConcurrencyTag ConcurrencyTag;
-  const Optimization_state& state = visits.state;
+  Optimization_state& state = visits.state;
   const auto point = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
   std::size_t before = (std::numeric_limits<std::size_t>::max)();
+  // angles of faces within a cluster have any value: the mean may decrease by this much, in degrees, and the
+  // iterations that follow raise it
+  const double largest_decrease = 1;
   while(true)
   {
     std::vector<char> is_in(state.mesh.number_of_vertices(), 0);
@@ -35,12 +38,15 @@ bool separate_clusters(Visits& visits)
         number += state.is_free[v];
       }
     if(number == 0 || number >= before)
-      return true;
+      break;
     before = number;
     const std::vector<char> faces = faces_around<ConcurrencyTag>(state.mesh, is_in, 1);
+    state.angle_gain = largest_decrease * state.mesh.number_of_faces();
     if(!visits.visit_regions(faces, Moves::cluster_separation, visits.densities()))
       return false;
   }
+  visits.update_sums();
+  return true;
 }
 
 } // namespace internal
