@@ -62,11 +62,11 @@ struct Mover_to
 struct Scene : Located_shape
 {
   internal::Patch patch = whole_patch();
+  internal::Shape_bound shape_bound; // owns the bounds of the samples
   internal::Patch_samples samples;
 
   Scene(const Shape& start, const Shape& reference) : Located_shape(start, reference)
   {
-    internal::Shape_bound shape_bound;
     shape_bound.initialize<CGAL::Sequential_tag>(state, 0.1, true, internal::Drift_barrier(1));
     samples = shape_bound.gather(state, patch);
   }
