@@ -23,11 +23,10 @@ bool separate_clusters(Visits& visits)
   typedef typename Visits::ConcurrencyTag ConcurrencyTag;
   Optimization_state& state = visits.state;
   const auto point = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
-  std::size_t before = (std::numeric_limits<std::size_t>::max)();
-  // angles of faces within a cluster have any value: the mean may decrease by this much, in degrees, and the
-  // iterations that follow raise it
-  const double largest_decrease = 1;
-  while(true)
+  const std::size_t none = (std::numeric_limits<std::size_t>::max)();
+  std::size_t before = none;
+  bool is_complete = true;
+  while(is_complete)
   {
     std::vector<char> is_in(state.mesh.number_of_vertices(), 0);
     std::size_t number = 0;
@@ -40,13 +39,16 @@ bool separate_clusters(Visits& visits)
     if(number == 0 || number >= before)
       break;
     before = number;
-    const std::vector<char> faces = faces_around<ConcurrencyTag>(state.mesh, is_in, 1);
+    // angles of faces within a cluster have any value: the mean may decrease by this much, in degrees, and
+    // the iterations that follow raise it
+    const double largest_decrease = 1;
     state.angle_gain = largest_decrease * state.mesh.number_of_faces();
-    if(!visits.visit_regions(faces, Moves::cluster_separation, visits.densities()))
-      return false;
+    const std::vector<char> faces = faces_around<ConcurrencyTag>(state.mesh, is_in, 1);
+    is_complete = visits.visit_regions(faces, Moves::cluster_separation, visits.densities());
   }
-  visits.update_sums();
-  return true;
+  if(before != none)
+    visits.update_sums();
+  return is_complete;
 }
 
 } // namespace internal
