@@ -111,6 +111,18 @@ inline void add_distortion(Measures& m, const Mesh& mesh, const Mesh& reference,
   m.smaller_is_better(Role::condition, "maximum_distortion", "  maximum", 2, d.maximum);
 }
 
+// the relative change of the volume that is enclosed; 0 for surfaces with a border and for polygons
+inline double volume_change(const Mesh& mesh, const Mesh& reference)
+{
+  namespace PMP = CGAL::Polygon_mesh_processing;
+  for(const Mesh* m : {&mesh, &reference})
+    if(!CGAL::is_triangle_mesh(*m) || !CGAL::is_closed(*m))
+      return 0;
+  const double before = std::abs(CGAL::to_double(PMP::volume(reference)));
+  const double after = std::abs(CGAL::to_double(PMP::volume(mesh)));
+  return before > 0 ? std::abs(after / before - 1) : 0;
+}
+
 // The reference is null if it is the mesh itself: deviations are zero then.
 inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
 {
@@ -134,6 +146,9 @@ inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
   m.larger_is_better(Role::condition, "sharp_edges_kept", "sharp edges, part kept", 3, f.kept);
   m.let_pass(small_part);
   m.smaller_is_better(Role::condition, "sharp_edges_added", "  added", 3, f.added);
+  m.let_pass(small_part);
+  m.smaller_is_better(Role::condition, "volume_change", "volume, part of it lost or added", 4,
+                      is_itself ? 0 : volume_change(mesh, *reference));
   m.let_pass(small_part);
 }
 

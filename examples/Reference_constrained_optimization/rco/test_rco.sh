@@ -187,7 +187,7 @@ expect 5 map flat.off reference.off --landmarks two.txt
 # ---- the verdict: what got worse is told, and such a mesh alone is not called better
 expect 0 angle triangles.off -o verdict.off
 grep -q '^improved' out || fail "no verdict"
-for key in mean_normal_deviation area_turned_above_45 sharp_edges_kept sharp_edges_added; do
+for key in mean_normal_deviation area_turned_above_45 sharp_edges_kept sharp_edges_added volume_change; do
   expect 0 angle triangles.off --number-of-iterations 1 --json
   json_is "before;$key" "$([ "$key" = sharp_edges_kept ] && echo 1 || echo 0)"
   [ "$has_json" = 0 ] || [ -n "$(json "after;$key")" ] || fail "no $key"

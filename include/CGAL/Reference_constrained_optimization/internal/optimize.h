@@ -212,8 +212,8 @@ void optimize(const FaceRange& range,
              ((defect_repair.has_restored_vertices() || state.angle_gain < 0) &&
               defect_repair.has_lowered_angles()) ||
              (defect_repair.has_restored_vertices() &&
-              result.drift > (std::max)(Drift_barrier::limit_factor * result.drift_bound,
-                                        result.initial_drift));
+              result.drift >
+                (std::max)(Drift_barrier::limit_factor * result.drift_bound, result.initial_drift));
     };
     const auto run_repair = [&]() {
       defect_repair.run();

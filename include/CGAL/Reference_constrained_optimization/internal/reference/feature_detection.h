@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct Feature_statistics
   // areas beside the same edges, of the smaller face each: noise turns slivers, and so counts little
   double sharp_area = 0, turned_area = 0;
   double flat_area = 0; // of faces with a coplanar neighbour
+  // of planes of two faces, and of more, up to rounding
+  double pair_area = 0, plane_area = 0;
+  double shortest_edge = std::numeric_limits<double>::infinity();
 
   // dimensionless; lines that are short compared with the component are not significant
   double amount() const { return area > 0 ? sharp_length / std::sqrt(area) : 0; }
@@ -52,10 +56,13 @@ struct Feature_statistics
             (sharp_area_share() > 0.5 && turned_share() < 0.45) ||
             (sharp_share() > 0.4 && turned_share() < 0.25));
   }
-  // planes and strips without a sharp edge: fillets of a few steps each
+  // tessellated from planes, cylinders and cones, but without a sharp edge: fillets of a few steps each.
+  // Marching cubes make planes, too, and vertices that nearly coincide.
   bool is_rounded() const
   {
-    return flat_share() > 0.85 && area > 0 && bent_length / std::sqrt(area) > 0.25;
+    const double size = std::sqrt(area);
+    return bent_length > 0.25 * size && shortest_edge > 1e-6 * size &&
+           (pair_area + plane_area > 0.65 * area || plane_area > 0.05 * area);
   }
 };
 
@@ -86,6 +93,7 @@ public:
   {
     m_result.is_feature.assign(m_mesh.number_of_corners(), 0);
     m_result.is_mechanical.assign(m_mesh.number_of_faces(), 0);
+    m_is_in_plane.assign(m_mesh.number_of_faces(), 0);
     compute_dihedral_angles();
     std::vector<char> is_unvisited(m_mesh.number_of_faces(), 1);
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
@@ -102,7 +110,8 @@ public:
 
 private:
   // degrees; the exterior angles of a regular polygon of nine vertices are 40, up to rounding
-  static constexpr double sharp_angle = 39.9, small_angle = 20, bent_angle = 10, flat_angle = 1;
+  static constexpr double sharp_angle = 39.9, small_angle = 20, bent_angle = 10, flat_angle = 1,
+                          rounding_angle = 0.02;
 
   void compute_dihedral_angles()
   {
@@ -148,6 +157,7 @@ private:
         if(m_mesh.opposite[c] < c)
           continue;
         ++e.edges;
+        e.shortest_edge = (std::min)(e.shortest_edge, length(c));
         const bool is_bent = m_dihedral_angle[c] > bent_angle && m_dihedral_angle[c] <= sharp_angle;
         e.bent_length += is_bent ? length(c) : 0;
         if(!(m_dihedral_angle[c] > small_angle) || is_fold(c))
@@ -165,6 +175,7 @@ private:
         sharp.push_back(c);
       }
     }
+    add_planes(component, e);
     const bool was_mechanical = m_result.statistics.is_mechanical(),
                is_mechanical = e.is_mechanical();
     if(is_mechanical != was_mechanical ? is_mechanical : e.area > m_result.statistics.area)
@@ -180,6 +191,35 @@ private:
     {
       follow(c);
       follow(m_mesh.opposite[c]);
+    }
+  }
+
+  void add_planes(const std::vector<int>& component, Feature_statistics& e)
+  {
+    std::vector<int> plane;
+    for(const int start : component)
+    {
+      if(m_is_in_plane[start])
+        continue;
+      plane.assign(1, start);
+      m_is_in_plane[start] = 1;
+      double area = 0;
+      for(std::size_t i = 0; i < plane.size(); ++i)
+      {
+        area += face_area(plane[i]);
+        for(int c = m_mesh.face_begin[plane[i]]; c < m_mesh.face_begin[plane[i] + 1]; ++c)
+        {
+          const int o = m_mesh.opposite[c];
+          if(o >= 0 && m_dihedral_angle[c] < rounding_angle &&
+             !m_is_in_plane[m_mesh.corner_face[o]])
+          {
+            m_is_in_plane[m_mesh.corner_face[o]] = 1;
+            plane.push_back(m_mesh.corner_face[o]);
+          }
+        }
+      }
+      e.pair_area += plane.size() == 2 ? area : 0;
+      e.plane_area += plane.size() > 2 ? area : 0;
     }
   }
 
@@ -301,6 +341,7 @@ private:
   bool m_takes_rounded;
   std::vector<double> m_dihedral_angle; // per corner: of its edge, in degrees
   std::vector<double> m_adjacent_angles;
+  std::vector<char> m_is_in_plane; // per face
   bool m_has_mechanical_parts = false;
   Detected_features m_result;
 };
