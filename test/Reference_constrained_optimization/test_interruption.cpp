@@ -98,7 +98,10 @@ struct Scene
 template <typename Tag>
 RCO::Result optimize(Mesh& mesh, const Mesh& reference, const Scene& scene, Visitor& visitor)
 {
-  const auto np = params::use_on_surface_steps(scene.on_surface).visitor(std::ref(visitor));
+  // parts would be optimized for another exponent, and the energy of the requested one not decrease
+  const auto np = params::use_on_surface_steps(scene.on_surface)
+                    .detect_features(false)
+                    .visitor(std::ref(visitor));
   if(scene.has_quads)
     return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Quad_angle_energy(), np);
   return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(),
