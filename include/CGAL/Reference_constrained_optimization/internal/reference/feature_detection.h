@@ -39,6 +39,7 @@ struct Feature_statistics
 
   // dimensionless; lines that are short compared with the component are not significant
   double amount() const { return area > 0 ? sharp_length / std::sqrt(area) : 0; }
+  bool is_significant() const { return amount() > 0.25; }
   double crisp_share() const { return sharp_length > 0 ? crisp_length / sharp_length : 0; }
   double sharp_share() const
   {
@@ -51,7 +52,7 @@ struct Feature_statistics
   // neither sharp nor small, or few have and most angles are small
   bool is_mechanical() const
   {
-    return amount() > 0.25 &&
+    return is_significant() &&
            (flat_share() > 0.85 || crisp_share() > 0.92 || sharp_share() > 0.65 ||
             (sharp_area_share() > 0.5 && turned_share() < 0.45) ||
             (sharp_share() > 0.4 && turned_share() < 0.25));
@@ -185,6 +186,8 @@ private:
     m_has_mechanical_parts = true;
     for(const int f : component)
       m_result.is_mechanical[f] = 1;
+    if(!e.is_significant())
+      return;
     for(const int c : sharp)
       add(c);
     for(const int c : sharp)
