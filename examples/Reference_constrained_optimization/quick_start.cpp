@@ -14,5 +14,5 @@ int main(int argc, char* argv[])
   // mesh and reference are one object: its shape on entry is the reference
   RCO::Result r = CGAL::reference_constrained_optimize(mesh, mesh, RCO::Minimum_angle_energy());
   std::cout << r.initial_energy << " -> " << r.final_energy << std::endl;
-  CGAL::IO::write_polygon_mesh(argv[2], mesh);
+  CGAL::IO::write_polygon_mesh(argv[2], mesh, CGAL::parameters::stream_precision(17));
 }

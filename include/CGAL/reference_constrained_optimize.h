@@ -158,7 +158,7 @@ namespace CGAL {
  *   \cgalParamNBegin{use_finishing_stage}
  *     \cgalParamDescription{whether a last stage raises the smallest angle, at a small cost to the energy
  *                           and of at most 0.2 degrees in the mean over the faces of their smallest angle.
- *                           It applies to energies whose rest triangles are all equilateral}
+ *                           It applies to energies whose `element_criterion` is `smallest_angle`}
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`true`}
  *   \cgalParamNEnd
