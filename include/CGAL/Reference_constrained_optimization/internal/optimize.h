@@ -206,10 +206,13 @@ void optimize(const FaceRange& range,
     round_to_user_coordinates(frame, state);
     Global_measure final = measure_all();
     Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices);
+    // where clusters were opened and the mean did not rise again; a repair of defects may lower it
+    const bool has_lost_angles = final.defects() == initial.defects() &&
+                                 state.angle_gain < -1e-9 * state.mesh.number_of_faces();
     const auto is_worse = [&]() {
       return final.defects() > initial.defects() ||
              (final.defects() == initial.defects() && final.energy > initial.energy) ||
-             ((defect_repair.has_restored_vertices() || state.angle_gain < 0) &&
+             ((defect_repair.has_restored_vertices() || has_lost_angles) &&
               defect_repair.has_lowered_angles()) ||
              (defect_repair.has_restored_vertices() &&
               result.drift >

@@ -57,7 +57,7 @@ struct Feature_statistics
             (sharp_area_share() > 0.5 && turned_share() < 0.45) ||
             (sharp_share() > 0.4 && turned_share() < 0.25));
   }
-  // tessellated from planes, cylinders and cones, but without a sharp edge: fillets of a few steps each.
+  // tessellated from planes, cylinders and cones, whose fillets of a few steps leave hardly a sharp edge.
   // Marching cubes make planes, too, and vertices that nearly coincide.
   bool is_rounded() const
   {
@@ -86,7 +86,7 @@ struct Detected_features
 class Feature_detection
 {
 public:
-  // `takes_rounded`: whether parts without sharp edges are mechanical, too
+  // `takes_rounded`: whether rounded parts are mechanical, too
   explicit Feature_detection(const Reference_surface& surface, bool takes_rounded = false)
     : m_surface(surface),
       m_mesh(surface.mesh()),
