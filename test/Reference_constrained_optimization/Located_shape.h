@@ -11,6 +11,7 @@
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/initial_state.h>
+#include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
 
 #include <vector>
@@ -44,6 +45,23 @@ struct Located_shape
     internal::locate_on_reference(copy.points, surface, state, unused);
   }
   Located_shape(const Located_shape&) = delete;
+
+  // lets the vertices of the border slide along that of the reference
+  RCO::Result relax_border()
+  {
+    internal::Constraints constraints;
+    constraints.is_constrained.assign(copy.points.size(), 0);
+    for(const int o : copy.mesh.opposite)
+      constraints.is_line.push_back(o < 0);
+    internal::Reference_lines lines;
+    const Indexed_mesh& triangles = surface.mesh();
+    for(int c = 0; c < triangles.number_of_corners(); ++c)
+      if(triangles.opposite[c] < 0)
+        lines.border.push_back({{triangles.source(c), triangles.target(c)}});
+    RCO::Result result;
+    internal::Sliding_vertices(state, constraints, lines, true, 1e-15, result);
+    return result;
+  }
 
   // the faces whose first vertex is at a place for which is_in(place) is true
   template <typename Is_in>

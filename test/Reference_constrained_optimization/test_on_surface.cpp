@@ -244,37 +244,41 @@ void test_pattern_search()
   }
 }
 
-// Clusters are found, and nothing else, and their vertices are separated.
+// Clusters are found, and nothing else, and their vertices are separated, on the surface and on its border.
 void test_clusters()
 {
   const Scope scope("clusters");
-  for(const double size : {1e-3, 1e-12})
-  {
-    const int n = 8, center = 4 * (n + 1) + 4;
-    Shape shape = plane_grid(n, n);
-    const Indexed_mesh mesh = indexed(shape);
-    const Vector_3 middle = shape.points[center];
-    std::set<int> expected = {center};
-    for(int k = mesh.vertex_begin[center]; k < mesh.vertex_begin[center + 1]; ++k)
-      expected.insert(mesh.target(mesh.vertex_corners[k]));
-    for(const int v : expected)
-      shape.points[v] = middle + size * (shape.points[v] - middle);
-    const auto found =
-      internal::vertex_clusters(mesh, [&](int v) -> const Vector_3& { return shape.points[v]; });
-    RCO_CHECK_EQUAL(found.size(), std::size_t(1));
-    RCO_CHECK(std::set<int>(found[0].begin(), found[0].end()) == expected);
-    Located_shape scene(shape, plane_grid(n, n));
-    const internal::Patch patch = scene.whole_patch();
-    internal::Cluster_mover mover(scene.surface);
-    RCO_CHECK(mover.propose(patch, internal::Patch_samples(), RCO::Exponential_MIPS_density(1)));
-    RCO_CHECK(scene.move(patch, mover));
-    for(std::size_t v = 0; v < shape.points.size(); ++v)
+  const int n = 8;
+  for(const int center : {4 * (n + 1) + 4, 4})
+    for(const double size : {1e-3, 1e-12})
     {
-      shape.points[v] = scene.state.vertices[v].position;
-      RCO_CHECK(expected.count(int(v)) || same_bits(shape.points[v], scene.copy.points[v]));
+      Shape shape = plane_grid(n, n);
+      const Indexed_mesh mesh = indexed(shape);
+      const Vector_3 middle = shape.points[center];
+      std::set<int> expected = {center};
+      for(int k = mesh.vertex_begin[center]; k < mesh.vertex_begin[center + 1]; ++k)
+        for(const int c : {mesh.vertex_corners[k], mesh.next(mesh.vertex_corners[k])})
+          expected.insert(mesh.target(c));
+      for(const int v : expected)
+        shape.points[v] = middle + size * (shape.points[v] - middle);
+      const auto found =
+        internal::vertex_clusters(mesh, [&](int v) -> const Vector_3& { return shape.points[v]; });
+      RCO_CHECK_EQUAL(found.size(), std::size_t(1));
+      RCO_CHECK(std::set<int>(found[0].begin(), found[0].end()) == expected);
+      Located_shape scene(shape, plane_grid(n, n));
+      scene.relax_border();
+      const internal::Patch patch = scene.whole_patch();
+      internal::Cluster_mover mover(scene.surface);
+      RCO_CHECK(mover.propose(patch, internal::Patch_samples(), RCO::Exponential_MIPS_density(1)));
+      RCO_CHECK(scene.move(patch, mover));
+      for(std::size_t v = 0; v < shape.points.size(); ++v)
+      {
+        shape.points[v] = scene.state.vertices[v].position;
+        RCO_CHECK(expected.count(int(v)) || same_bits(shape.points[v], scene.copy.points[v]));
+        RCO_CHECK(center > n || v > n || shape.points[v].y() == 0); // the lower side
+      }
+      RCO_CHECK_LESS(5., smallest_angle(shape));
     }
-    RCO_CHECK_LESS(5., smallest_angle(shape));
-  }
   Shape regular = icosphere(2);
   RCO_CHECK(internal::vertex_clusters(indexed(regular), [&](int v) -> const Vector_3& {
               return regular.points[v];

@@ -111,17 +111,7 @@ void test_sliding()
   const Scope scope("sliding");
   const int n = 8;
   Located_shape scene(plane_grid(n, n), plane_grid(5, 5));
-  const Indexed_mesh& mesh = scene.copy.mesh;
-  internal::Constraints constraints;
-  constraints.is_constrained.assign(mesh.number_of_vertices(), 0);
-  internal::Reference_lines lines;
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-    constraints.is_line.push_back(mesh.opposite[c] < 0);
-  for(int c = 0; c < scene.surface.mesh().number_of_corners(); ++c)
-    if(scene.surface.mesh().opposite[c] < 0)
-      lines.border.push_back({{scene.surface.mesh().source(c), scene.surface.mesh().target(c)}});
-  RCO::Result result;
-  internal::Sliding_vertices(scene.state, constraints, lines, true, 1e-15, result);
+  const RCO::Result result = scene.relax_border();
   RCO_CHECK_EQUAL(result.number_of_free_vertices, std::size_t(4 * (n - 1)));
   const internal::Patch patch = scene.whole_patch();
   for(int v = 0; v < int(patch.vertices.size()); ++v)

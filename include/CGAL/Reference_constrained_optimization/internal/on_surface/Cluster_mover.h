@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/Patch_samples.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/seconds_since.h>
 
 #include <algorithm>
@@ -109,6 +110,8 @@ public:
 
   bool displaced_vertex(const Patch& patch, int v, double t, Located_vertex& result) const
   {
+    if(patch.slides(v))
+      return slide(patch, v, t * m_displacement[v].dot(tangent(patch, v)), m_reference, result);
     return step_on_surface(m_reference, patch.located[v], t * m_displacement[v], result);
   }
 
@@ -116,7 +119,11 @@ public:
   double optimization_time() const { return m_optimization_time; }
 
 private:
-  static bool may_move(const Patch& patch, int v) { return patch.is_free[v] && !patch.slides(v); }
+  // of the line on which v slides
+  static Vector_3 tangent(const Patch& patch, int v)
+  {
+    return patch.lines->tangent(patch.located[v].on_line);
+  }
 
   bool separate(const Patch& patch, const std::vector<int>& cluster)
   {
@@ -155,7 +162,7 @@ private:
     for(int sweep = 0; sweep < sweeps; ++sweep)
       for(const int v : cluster)
       {
-        if(!may_move(patch, v))
+        if(!patch.is_free[v])
           continue;
         found = true;
         const std::vector<int> neighbours = around(v);
@@ -164,7 +171,10 @@ private:
           sum += is_in(w) ? m_displacement[w]
                           : Vector_3(radius * (patch.located[w].position - center).normalized());
         m_displacement[v] = sum / double(neighbours.size());
-        m_displacement[v] -= m_displacement[v].dot(normal) * normal;
+        if(patch.slides(v))
+          m_displacement[v] = m_displacement[v].dot(tangent(patch, v)) * tangent(patch, v);
+        else
+          m_displacement[v] -= m_displacement[v].dot(normal) * normal;
       }
     return found;
   }
