@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_MONOTONICITY_VISITOR_H
-#define RCO_BENCHMARK_MONOTONICITY_VISITOR_H
+#pragma once
 
 #include <CGAL/Reference_constrained_optimization/Default_visitor.h>
 
@@ -17,5 +16,3 @@ struct Monotonicity_visitor : CGAL::Reference_constrained_optimization::Default_
       ++violations;
   }
 };
-
-#endif // RCO_BENCHMARK_MONOTONICITY_VISITOR_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_DRIVER_H
-#define RCO_BENCHMARK_DRIVER_H
+#pragma once
 
 // What the programs have in common: each makes one run and prints its figures as a line of JSON. run.py
 // makes many runs.
@@ -126,5 +125,3 @@ inline const char* name(CGAL::Reference_constrained_optimization::Status status)
   }
   return "";
 }
-
-#endif // RCO_BENCHMARK_DRIVER_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_GUARANTEES_H
-#define RCO_BENCHMARK_GUARANTEES_H
+#pragma once
 
 // What --check verifies in all drivers.
 
@@ -77,5 +76,3 @@ public:
 private:
   std::string m_text;
 };
-
-#endif // RCO_BENCHMARK_GUARANTEES_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_LIBRARY_CALL_H
-#define RCO_BENCHMARK_LIBRARY_CALL_H
+#pragma once
 
 // Calls the library with the settings that the drivers have in common.
 
@@ -48,5 +47,3 @@ CGAL::Reference_constrained_optimization::Result optimize(Mesh& mesh,
 #endif
   return CGAL::reference_constrained_optimize(mesh, reference, energy, np);
 }
-
-#endif // RCO_BENCHMARK_LIBRARY_CALL_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_MESHES_H
-#define RCO_BENCHMARK_MESHES_H
+#pragma once
 
 // The drivers' mesh type, reading and writing.
 
@@ -41,5 +40,3 @@ inline std::string base_name(const std::string& file)
   const std::filesystem::path path(file);
   return (path.has_filename() ? path : path.parent_path()).stem().string();
 }
-
-#endif // RCO_BENCHMARK_MESHES_H

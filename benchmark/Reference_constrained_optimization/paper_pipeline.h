@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_PAPER_PIPELINE_H
-#define RCO_BENCHMARK_PAPER_PIPELINE_H
+#pragma once
 
 // Algorithm 1 of the paper as it stands, made of the package's parts. From the paper it differs in these: a
 // face also counts as touched if it was the seed or inside two patches, without which an iteration need not
@@ -171,5 +170,3 @@ Result optimize(Mesh& mesh, const Mesh& reference, const Energy& energy, const N
 }
 
 } // namespace paper
-
-#endif // RCO_BENCHMARK_PAPER_PIPELINE_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_RESULT_COLUMNS_H
-#define RCO_BENCHMARK_RESULT_COLUMNS_H
+#pragma once
 
 // Columns that the drivers have in common.
 
@@ -100,5 +99,3 @@ bool add_check(Row& row,
   row.add("violations", !has_guarantees ? "-" : broken.empty() ? "none" : broken);
   return broken.empty();
 }
-
-#endif // RCO_BENCHMARK_RESULT_COLUMNS_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_SETTINGS_H
-#define RCO_BENCHMARK_SETTINGS_H
+#pragma once
 
 // Settings that the drivers have in common.
 
@@ -79,5 +78,3 @@ inline double relative_drift_bound(const Command_line& a)
   return a.text("--drift-bound", "") == "inf" ? std::numeric_limits<double>::infinity()
                                               : a.number("--drift-bound", -1.);
 }
-
-#endif // RCO_BENCHMARK_SETTINGS_H

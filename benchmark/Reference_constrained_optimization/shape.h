@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_SHAPE_H
-#define RCO_BENCHMARK_SHAPE_H
+#pragma once
 
 #include "meshes.h"
 
@@ -33,5 +32,3 @@ private:
   }
   CGAL::Reference_constrained_optimization::internal::Reference_surface m_surface;
 };
-
-#endif // RCO_BENCHMARK_SHAPE_H

@@ -4,8 +4,7 @@
 
 // Shapes on their reference surfaces, as the optimization holds them.
 
-#ifndef RCO_TEST_LOCATED_SHAPE_H
-#define RCO_TEST_LOCATED_SHAPE_H
+#pragma once
 
 #include "shapes.h"
 
@@ -91,5 +90,3 @@ struct Located_shape
 };
 
 } // namespace rco_test
-
-#endif // RCO_TEST_LOCATED_SHAPE_H

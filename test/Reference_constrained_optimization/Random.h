@@ -4,8 +4,7 @@
 
 // Random numbers that are the same everywhere, and matrices made of them.
 
-#ifndef RCO_TEST_RANDOM_H
-#define RCO_TEST_RANDOM_H
+#pragma once
 
 #include <Eigen/Core>
 
@@ -76,5 +75,3 @@ inline Matrix_2 with_singular_values(double s1, double s2, Random& random)
 }
 
 } // namespace rco_test
-
-#endif // RCO_TEST_RANDOM_H

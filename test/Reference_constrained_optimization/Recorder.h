@@ -4,8 +4,7 @@
 
 // A visitor that tests and adds up what it is told.
 
-#ifndef RCO_TEST_RECORDER_H
-#define RCO_TEST_RECORDER_H
+#pragma once
 
 #include "checks.h"
 
@@ -115,5 +114,3 @@ struct Recorder : RCO::Default_visitor
 };
 
 } // namespace rco_test
-
-#endif // RCO_TEST_RECORDER_H

@@ -4,8 +4,7 @@
 
 // An energy of stencils, without derivatives.
 
-#ifndef RCO_TEST_STRAIGHT_ROWS_H
-#define RCO_TEST_STRAIGHT_ROWS_H
+#pragma once
 
 #include <CGAL/Reference_constrained_optimization/Energy_stencil.h>
 
@@ -49,5 +48,3 @@ struct Straight_rows
 };
 
 } // namespace rco_test
-
-#endif // RCO_TEST_STRAIGHT_ROWS_H

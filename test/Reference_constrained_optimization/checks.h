@@ -4,8 +4,7 @@
 
 // Checks that do not depend on NDEBUG, and the exit code of a test.
 
-#ifndef RCO_TEST_CHECKS_H
-#define RCO_TEST_CHECKS_H
+#pragma once
 
 #include <chrono>
 #include <cmath>
@@ -131,5 +130,3 @@ inline int report()
   } while(false)
 
 } // namespace rco_test
-
-#endif // RCO_TEST_CHECKS_H

@@ -4,8 +4,7 @@
 
 // What is done to shapes: joined, cut, moved at random, bent.
 
-#ifndef RCO_TEST_DEFORMATIONS_H
-#define RCO_TEST_DEFORMATIONS_H
+#pragma once
 
 #include "shapes.h"
 
@@ -178,5 +177,3 @@ inline Shape square(int columns, int rows, bool quads = false)
 }
 
 } // namespace rco_test
-
-#endif // RCO_TEST_DEFORMATIONS_H

@@ -4,8 +4,7 @@
 
 // Shapes as CGAL's meshes and back, and shapes from files.
 
-#ifndef RCO_TEST_MESHES_H
-#define RCO_TEST_MESHES_H
+#pragma once
 
 #include "shapes.h"
 
@@ -111,5 +110,3 @@ inline Shape read_off(const std::string& name)
 }
 
 } // namespace rco_test
-
-#endif // RCO_TEST_MESHES_H

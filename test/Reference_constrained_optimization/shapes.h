@@ -4,8 +4,7 @@
 
 // Meshes made by formulas, and measures of them.
 
-#ifndef RCO_TEST_SHAPES_H
-#define RCO_TEST_SHAPES_H
+#pragma once
 
 #include "Random.h"
 
@@ -463,5 +462,3 @@ inline double area(const Shape& s)
 }
 
 } // namespace rco_test
-
-#endif // RCO_TEST_SHAPES_H

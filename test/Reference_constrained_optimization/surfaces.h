@@ -4,8 +4,7 @@
 
 // Shapes as reference surfaces, and meshes that wander on them.
 
-#ifndef RCO_TEST_SURFACES_H
-#define RCO_TEST_SURFACES_H
+#pragma once
 
 #include "checks.h"
 #include "deformations.h"
@@ -100,5 +99,3 @@ inline Shape wandered(const Shape& shape,
 }
 
 } // namespace rco_test
-
-#endif // RCO_TEST_SURFACES_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_MESH_ON_REFERENCE_H
-#define RCO_BENCHMARK_MESH_ON_REFERENCE_H
+#pragma once
 
 // A triangle mesh whose vertices lie on its own initial shape and slide along it: what those peers
 // need that do not bring a projection of their own.
@@ -92,5 +91,3 @@ private:
   Reference_surface m_reference;
   std::vector<Surface_point> m_vertices;
 };
-
-#endif // RCO_BENCHMARK_MESH_ON_REFERENCE_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_PEER_RESULT_H
-#define RCO_BENCHMARK_PEER_RESULT_H
+#pragma once
 
 // What an optimizer hands back, and the clock that all are timed with.
 
@@ -24,5 +23,3 @@ struct Peer_result
   double seconds = 0;
   std::string note; // what else should be known of the run
 };
-
-#endif // RCO_BENCHMARK_PEER_RESULT_H

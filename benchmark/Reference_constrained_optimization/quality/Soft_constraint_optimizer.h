@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_SOFT_CONSTRAINT_OPTIMIZER_H
-#define RCO_BENCHMARK_SOFT_CONSTRAINT_OPTIMIZER_H
+#pragma once
 
 // The approach without a hard constraint: vertices move freely in space, and squared distances to
 // the reference are part of the energy. In turn, every vertex is projected onto the reference, the
@@ -142,5 +141,3 @@ private:
   std::vector<Plane> m_planes;
   std::vector<Vector> m_normals;
 };
-
-#endif // RCO_BENCHMARK_SOFT_CONSTRAINT_OPTIMIZER_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_STAR_SMOOTHER_H
-#define RCO_BENCHMARK_STAR_SMOOTHER_H
+#pragma once
 
 // A Gauss-Seidel smoother: one vertex at a time, by a Newton step in the tangent plane of the
 // reference, on the logarithm of its star's energy, sum of exp(s |J|^2 / det J).
@@ -135,5 +134,3 @@ private:
   std::vector<Side> m_star;
   mutable std::vector<double> m_exponents;
 };
-
-#endif // RCO_BENCHMARK_STAR_SMOOTHER_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_ARAP_BASELINE_H
-#define RCO_BENCHMARK_ARAP_BASELINE_H
+#pragma once
 
 // What compatible meshes are compared with: an as-rigid-as-possible energy of the map plus a soft
 // constraint to the reference, as in "Volume-enhanced compatible remeshing" (Yang, Zhang, Fu, Liu),
@@ -202,5 +201,3 @@ int arap_baseline(const Mesh& source,
   }
   return p.number_of_iterations;
 }
-
-#endif // RCO_BENCHMARK_ARAP_BASELINE_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_CGAL_PEERS_H
-#define RCO_BENCHMARK_CGAL_PEERS_H
+#pragma once
 
 // What CGAL's Polygon_mesh_processing has that improves triangles. Functions with a number of
 // iterations are tried with several, and the one that ends with the largest minimum angle is kept.
@@ -171,5 +170,3 @@ inline Peer_result remesh(const Mesh& input)
   result.note = iterations_text(number_of_iterations);
   return result;
 }
-
-#endif // RCO_BENCHMARK_CGAL_PEERS_H

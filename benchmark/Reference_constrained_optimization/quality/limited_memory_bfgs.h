@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_LIMITED_MEMORY_BFGS_H
-#define RCO_BENCHMARK_LIMITED_MEMORY_BFGS_H
+#pragma once
 
 // Minimizes a function by the limited-memory BFGS method with backtracking.
 
@@ -120,5 +119,3 @@ int minimize(const Function& function,
   }
   return most_iterations;
 }
-
-#endif // RCO_BENCHMARK_LIMITED_MEMORY_BFGS_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_PEERS_H
-#define RCO_BENCHMARK_PEERS_H
+#pragma once
 
 // The optimizers that are compared, each moving a mesh along its own initial shape with its border
 // fixed.
@@ -91,5 +90,3 @@ inline std::map<std::string, Peer> all_peers()
     {"relax_guarded", [](const Mesh& m, double limit) { return relax(m, true, limit); }},
     {"remesh", [](const Mesh& m, double) { return remesh(m); }}};
 }
-
-#endif // RCO_BENCHMARK_PEERS_H

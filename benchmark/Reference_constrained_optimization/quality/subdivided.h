@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_SUBDIVIDED_H
-#define RCO_BENCHMARK_SUBDIVIDED_H
+#pragma once
 
 // Finer quad meshes of a surface.
 
@@ -34,5 +33,3 @@ inline Mesh subdivided(Mesh mesh, const Mesh& reference, int steps)
   }
   return mesh;
 }
-
-#endif // RCO_BENCHMARK_SUBDIVIDED_H

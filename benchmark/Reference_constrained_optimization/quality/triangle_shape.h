@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_TRIANGLE_SHAPE_H
-#define RCO_BENCHMARK_TRIANGLE_SHAPE_H
+#pragma once
 
 // The shape of a triangle in space, the exponent of the paper's equation (8): |J|^2 / det J for the
 // map J from an equilateral triangle. It is 2 at best and infinite for a triangle without area.
@@ -50,5 +49,3 @@ inline Triangle_shape_jet triangle_shape_jet(const Vector& a, const Vector& b, c
                 denominator;
   return jet;
 }
-
-#endif // RCO_BENCHMARK_TRIANGLE_SHAPE_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_BYTE_READER_H
-#define RCO_BENCHMARK_BYTE_READER_H
+#pragma once
 
 // Choices and numbers from the bytes that a fuzzer hands out. After the last byte all are 0.
 
@@ -65,5 +64,3 @@ public:
 private:
   const std::uint8_t *m_data, *m_end;
 };
-
-#endif // RCO_BENCHMARK_BYTE_READER_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_LOCATIONS_H
-#define RCO_BENCHMARK_LOCATIONS_H
+#pragma once
 
 // Where the package says that the vertices lie on a triangle mesh, and what follows. A closest point
 // may be on another sheet where a surface passes through itself.
@@ -150,5 +149,3 @@ private:
   const Mesh& m_reference;
   Map m_map;
 };
-
-#endif // RCO_BENCHMARK_LOCATIONS_H

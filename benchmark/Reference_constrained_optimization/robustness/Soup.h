@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_SOUP_H
-#define RCO_BENCHMARK_SOUP_H
+#pragma once
 
 // Points and faces that need not make a mesh, and simple shapes.
 
@@ -197,5 +196,3 @@ inline Soup turned_round(Soup s)
     std::swap(f.front(), f.back());
   return s;
 }
-
-#endif // RCO_BENCHMARK_SOUP_H

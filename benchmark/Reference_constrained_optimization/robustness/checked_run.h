@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_CHECKED_RUN_H
-#define RCO_BENCHMARK_CHECKED_RUN_H
+#pragma once
 
 // One call of the package, with all of its guarantees checked.
 
@@ -304,5 +303,3 @@ inline Outcome checked_run(const Mesh& input,
     return Outcome::exception;
   }
 }
-
-#endif // RCO_BENCHMARK_CHECKED_RUN_H

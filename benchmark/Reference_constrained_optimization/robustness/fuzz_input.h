@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_FUZZ_INPUT_H
-#define RCO_BENCHMARK_FUZZ_INPUT_H
+#pragma once
 
 // Small meshes and parameters out of bytes: a shape, connectivity that is damaged, points that are
 // moved to bad places, a reference.
@@ -270,5 +269,3 @@ private:
 
   Byte_reader m_bytes;
 };
-
-#endif // RCO_BENCHMARK_FUZZ_INPUT_H

@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_OUTCOME_H
-#define RCO_BENCHMARK_OUTCOME_H
+#pragma once
 
 // How a call of the package can end, and what was expected.
 
@@ -53,5 +52,3 @@ inline Expectation is_refused(const std::string& first_words)
   return {{Outcome::refused}, first_words};
 }
 inline Expectation is_optimized() { return {{Outcome::improved, Outcome::nothing_to_do}, ""}; }
-
-#endif // RCO_BENCHMARK_OUTCOME_H

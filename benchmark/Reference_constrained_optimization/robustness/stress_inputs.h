@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_STRESS_INPUTS_H
-#define RCO_BENCHMARK_STRESS_INPUTS_H
+#pragma once
 
 // Small inputs, each with one thing wrong, and what has to become of them.
 
@@ -334,5 +333,3 @@ inline std::vector<Stress_input> stress_inputs()
     .with_noise(improves);
   return all;
 }
-
-#endif // RCO_BENCHMARK_STRESS_INPUTS_H

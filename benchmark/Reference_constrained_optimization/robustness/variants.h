@@ -1,5 +1,4 @@
-#ifndef RCO_BENCHMARK_VARIANTS_H
-#define RCO_BENCHMARK_VARIANTS_H
+#pragma once
 
 // The same input in other units, at another place, and with noise.
 
@@ -80,5 +79,3 @@ inline void apply(const Variant& variant, double reference_diagonal, Mesh& mesh,
     return p + Kernel::Vector_3(x, y, z);
   });
 }
-
-#endif // RCO_BENCHMARK_VARIANTS_H
