@@ -4,8 +4,7 @@
 // makes many runs.
 
 #include "../../examples/Reference_constrained_optimization/command_line.h"
-
-#include <CGAL/Reference_constrained_optimization/Result.h>
+#include "meshes.h"
 
 #include <cmath>
 #include <cstdio>
@@ -108,19 +107,19 @@ inline double peak_memory() // in megabytes, of this process so far
 #endif
 }
 
-inline const char* name(CGAL::Reference_constrained_optimization::Status status)
+inline const char* name(RCO::Status status)
 {
   switch(status)
   {
-  case CGAL::Reference_constrained_optimization::Status::converged:
+  case RCO::Status::converged:
     return "converged";
-  case CGAL::Reference_constrained_optimization::Status::iteration_limit:
+  case RCO::Status::iteration_limit:
     return "iteration limit";
-  case CGAL::Reference_constrained_optimization::Status::time_limit:
+  case RCO::Status::time_limit:
     return "time limit";
-  case CGAL::Reference_constrained_optimization::Status::interrupted:
+  case RCO::Status::interrupted:
     return "interrupted";
-  case CGAL::Reference_constrained_optimization::Status::nothing_to_do:
+  case RCO::Status::nothing_to_do:
     return "nothing to do";
   }
   return "";

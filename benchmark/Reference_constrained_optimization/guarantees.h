@@ -19,7 +19,7 @@ inline std::string in_short(double x)
 
 struct Defects_in_and_out
 {
-  CGAL::Reference_constrained_optimization::Orientation_defects in, out;
+  RCO::Orientation_defects in, out;
 };
 
 // the guarantees that are violated, in words
@@ -58,8 +58,8 @@ public:
     for(const Mesh::Vertex_index v : input.vertices())
       moved += !may_move(v) && input.point(v) != output.point(v);
     const auto none = CGAL::parameters::default_values();
-    const auto distance = CGAL::Reference_constrained_optimization::distance_to_reference(
-      output, reference, none, none, is_on_reference);
+    const auto distance =
+      RCO::distance_to_reference(output, reference, none, none, is_on_reference);
     add_if(monotonicity_violations > 0,
            std::to_string(monotonicity_violations) + " patches not monotone");
     add_if(!distance.is_on_reference(), "vertex " + std::to_string(distance.vertex) +

@@ -30,15 +30,14 @@ auto with_common_settings(const Own_parameters& own, const Common_settings& s, V
 
 // by the public function, or as the paper describes it
 template <typename Energy, typename Named_parameters>
-CGAL::Reference_constrained_optimization::Result optimize(Mesh& mesh,
-                                                          const Mesh& reference,
-                                                          const Energy& energy,
-                                                          const Named_parameters& np,
-                                                          const Common_settings& s)
+RCO::Result optimize(Mesh& mesh,
+                     const Mesh& reference,
+                     const Energy& energy,
+                     const Named_parameters& np,
+                     const Common_settings& s)
 {
   if(s.method == "paper")
-    return paper::optimize(mesh, reference, energy,
-                           CGAL::Reference_constrained_optimization::internal::cgal_parameters(np));
+    return paper::optimize(mesh, reference, energy, RCO::internal::cgal_parameters(np));
   if(s.method != "ours" && s.method != "plain")
     throw std::invalid_argument("there is no method " + s.method);
 #ifdef CGAL_LINKED_WITH_TBB

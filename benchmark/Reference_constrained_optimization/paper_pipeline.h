@@ -26,7 +26,7 @@
 
 namespace paper {
 
-using namespace CGAL::Reference_constrained_optimization::internal;
+using namespace RCO::internal;
 using namespace CGAL::Reference_constrained_optimization;
 
 // the face of least cost comes next, and the first that costs too much ends the patch
@@ -78,13 +78,8 @@ Flattening optimize_patch(const Patch& patch, const Density& density, Optimizati
     return flattening;
 
   Planar_problem problem;
-  for(const Element_set::Element& e : patch.elements)
-  {
-    problem.triples.push_back(e.vertices);
-    problem.rest_inverse.push_back(e.rest_inverse);
-    problem.metric.push_back(Eigen::Matrix2d::Identity());
-  }
-  problem.is_free = patch.is_free;
+  problem.set_elements(patch,
+                       [](const Element_set::Element&) { return Eigen::Matrix2d::Identity(); });
   std::vector<Vector_2> u = flattening.positions;
   Projected_newton optimizer;
   optimizer.analyze(problem);

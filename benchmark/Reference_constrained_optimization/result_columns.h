@@ -29,11 +29,9 @@ inline void add_flips_and_folds(Row& row, const Defects_in_and_out& defects)
 }
 
 // smallest angles of the faces; `when` is _in, _out, or nothing
-inline CGAL::Reference_constrained_optimization::Angle_statistics
-add_angles(Row& row, const Mesh& mesh, const std::string& when)
+inline RCO::Angle_statistics add_angles(Row& row, const Mesh& mesh, const std::string& when)
 {
-  const CGAL::Reference_constrained_optimization::Angle_statistics a =
-    CGAL::Reference_constrained_optimization::angle_statistics(mesh);
+  const RCO::Angle_statistics a = RCO::angle_statistics(mesh);
   row.add("theta_min" + when, a.minimum);
   row.add("theta_mean" + when, a.mean);
   row.add("theta_std" + when, a.standard_deviation);
@@ -41,15 +39,13 @@ add_angles(Row& row, const Mesh& mesh, const std::string& when)
 }
 
 // both ways
-inline void add_drift(Row& row,
-                      const CGAL::Reference_constrained_optimization::Drift& drift,
-                      const std::string& when)
+inline void add_drift(Row& row, const RCO::Drift& drift, const std::string& when)
 {
   row.add("drift_mesh_to_reference" + when, drift.relative_mesh_to_reference());
   row.add("drift_reference_to_mesh" + when, drift.relative_reference_to_mesh());
 }
 
-inline void add_iterations(Row& row, const CGAL::Reference_constrained_optimization::Result& r)
+inline void add_iterations(Row& row, const RCO::Result& r)
 {
   const double iterations = double(r.number_of_iterations);
   row.add("status", name(r.status));
@@ -57,13 +53,13 @@ inline void add_iterations(Row& row, const CGAL::Reference_constrained_optimizat
   row.add("n_in", iterations > 0 ? double(r.number_of_patches) / iterations : 0);
 }
 
-inline void add_accepted(Row& row, const CGAL::Reference_constrained_optimization::Result& r)
+inline void add_accepted(Row& row, const RCO::Result& r)
 {
   row.add("accepted_percent",
           percentage(double(r.number_of_accepted_patches), double(r.number_of_patches)));
 }
 
-inline void add_stages(Row& row, const CGAL::Reference_constrained_optimization::Stage_times& t)
+inline void add_stages(Row& row, const RCO::Stage_times& t)
 {
   const double all = t.setup + t.selection + t.flattening + t.optimization + t.acceptance;
   row.add("setup_percent", percentage(t.setup, all));
@@ -77,7 +73,6 @@ inline void add_stages(Row& row, const CGAL::Reference_constrained_optimization:
 // that is left out for large meshes.
 inline void add_times(Row& row, const Mesh& mesh, double seconds)
 {
-  namespace RCO = CGAL::Reference_constrained_optimization;
   const double factorization = mesh.number_of_vertices() <= RCO::factorization_time_vertex_limit
                                  ? RCO::factorization_time(mesh)
                                  : std::numeric_limits<double>::quiet_NaN();

@@ -45,7 +45,7 @@ inline std::map<std::string, bool> with_common_options(std::map<std::string, boo
 // the defaults are those of the library
 struct Common_settings
 {
-  typedef CGAL::Reference_constrained_optimization::internal::Loop_parameters Defaults;
+  typedef RCO::internal::Loop_parameters Defaults;
 
   double developability, tolerance, time_limit;
   int patch_size;

@@ -10,8 +10,8 @@ class Shape
 {
 public:
   explicit Shape(const Mesh& mesh)
-    : m_surface(CGAL::Reference_constrained_optimization::internal::read_measured_mesh(
-        mesh, CGAL::parameters::default_values(), "shape"))
+    : m_surface(
+        RCO::internal::read_measured_mesh(mesh, CGAL::parameters::default_values(), "shape"))
   {}
   Kernel::Point_3 project(const Kernel::Point_3& p) const
   {
@@ -25,10 +25,9 @@ public:
   }
 
 private:
-  CGAL::Reference_constrained_optimization::internal::Surface_point
-  closest(const Kernel::Point_3& p) const
+  RCO::internal::Surface_point closest(const Kernel::Point_3& p) const
   {
     return m_surface.closest(Eigen::Vector3d(p.x(), p.y(), p.z()));
   }
-  CGAL::Reference_constrained_optimization::internal::Reference_surface m_surface;
+  RCO::internal::Reference_surface m_surface;
 };

@@ -10,8 +10,28 @@
 
 namespace rco_test {
 
+typedef std::function<Vector_3(const Vector_3&)> Deformation;
+
+inline Shape deformed(Shape s, const Deformation& f)
+{
+  for(Vector_3& p : s.points)
+    p = f(p);
+  return s;
+}
+
+inline Shape scaled(const Shape& s, double x, double y, double z)
+{
+  return deformed(s, [=](const Vector_3& p) { return Vector_3(x * p.x(), y * p.y(), z * p.z()); });
+}
+inline Shape scaled(const Shape& s, double factor) { return scaled(s, factor, factor, factor); }
+
+inline Shape shifted(const Shape& s, const Vector_3& shift)
+{
+  return deformed(s, [=](const Vector_3& p) -> Vector_3 { return p + shift; });
+}
+
 // both meshes as one, the second shifted
-inline Shape joined(const Shape& a, const Shape& b, const Vector_3& shift)
+inline Shape joined(const Shape& a, const Shape& b, const Vector_3& shift = Vector_3::Zero())
 {
   Shape s = a;
   for(const Vector_3& p : b.points)
@@ -84,10 +104,8 @@ inline Shape compacted(const Shape& shape)
 
 // Vertices away from the border moved at random by up to `amount` of their shortest edge, then back
 // onto the surface by `project`.
-inline Shape scrambled(const Shape& shape,
-                       double amount,
-                       std::uint64_t seed,
-                       const std::function<Vector_3(const Vector_3&)>& project)
+inline Shape
+scrambled(const Shape& shape, double amount, std::uint64_t seed, const Deformation& project)
 {
   Shape s = shape;
   const Indexed_mesh mesh = indexed(shape);
@@ -111,28 +129,19 @@ inline Shape scrambled(const Shape& shape,
 
 inline Vector_3 onto_plane(const Vector_3& p) { return Vector_3(p.x(), p.y(), 0); }
 inline Vector_3 onto_sphere(const Vector_3& p) { return p.normalized(); }
-inline std::function<Vector_3(const Vector_3&)> onto_cylinder(double radius)
+inline Deformation onto_cylinder(double radius)
 {
   return [=](const Vector_3& p) {
     const double r = std::hypot(p.x(), p.y());
     return Vector_3(p.x() * radius / r, p.y() * radius / r, p.z());
   };
 }
-inline std::function<Vector_3(const Vector_3&)> onto_torus(double big, double small)
+inline Deformation onto_torus(double big, double small)
 {
   return [=](const Vector_3& p) {
     const Vector_3 ring = Vector_3(p.x(), p.y(), 0).normalized() * big;
     return Vector_3(ring + (p - ring).normalized() * small);
   };
-}
-
-typedef std::function<Vector_3(const Vector_3&)> Deformation;
-
-inline Shape deformed(Shape s, const Deformation& f)
-{
-  for(Vector_3& p : s.points)
-    p = f(p);
-  return s;
 }
 
 // of the unit sphere
@@ -171,9 +180,8 @@ inline Vector_3 arched(const Vector_3& p)
 // the unit square, `columns` and `rows` wide
 inline Shape square(int columns, int rows, bool quads = false)
 {
-  return deformed(plane_grid(columns, rows, 1, quads), [=](const Vector_3& p) -> Vector_3 {
-    return Vector_3(p.x(), p.y() * columns / rows, 0);
-  });
+  return deformed(plane_grid(columns, rows, 1, quads),
+                  [=](const Vector_3& p) { return Vector_3(p.x(), p.y() * columns / rows, 0); });
 }
 
 } // namespace rco_test

@@ -26,6 +26,9 @@ namespace RCO = CGAL::Reference_constrained_optimization;
 namespace internal = RCO::internal;
 using internal::Indexed_mesh;
 
+// into which triangles the quads of a grid are split
+enum class Diagonals { none, first, second, alternating };
+
 // A polygon mesh as points and faces.
 struct Shape
 {
@@ -44,16 +47,18 @@ struct Shape
     triangle(a, b, second ? d : c);
     second ? triangle(b, c, d) : triangle(a, c, d);
   }
-  // quads with the vertices at(i, j), split along alternating diagonals or not
+  // quads with the vertices at(i, j)
   template <typename At>
-  void grid(int columns, int rows, bool quads, const At& at)
+  void grid(int columns, int rows, Diagonals diagonals, const At& at)
   {
     for(int j = 0; j < rows; ++j)
       for(int i = 0; i < columns; ++i)
-        if(quads)
+        if(diagonals == Diagonals::none)
           faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
         else
-          quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j) % 2 == 1);
+          quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1),
+               diagonals == Diagonals::second ||
+                 (diagonals == Diagonals::alternating && (i + j) % 2 == 1));
   }
 };
 
@@ -73,29 +78,43 @@ inline CGAL::Reference_constrained_optimization::internal::Mesh_copy copy_of(con
   return {indexed(shape), shape.points};
 }
 
+// A grid with the vertices point(i, j). In a direction in which it is closed the last column or row is
+// the first one.
+template <typename Point>
+Shape grid(int columns,
+           int rows,
+           Diagonals diagonals,
+           const Point& point,
+           bool closes_columns = false,
+           bool closes_rows = false)
+{
+  Shape s;
+  const int nx = closes_columns ? columns : columns + 1, ny = closes_rows ? rows : rows + 1;
+  for(int j = 0; j < ny; ++j)
+    for(int i = 0; i < nx; ++i)
+      s.points.push_back(point(i, j));
+  s.grid(columns, rows, diagonals, [&](int i, int j) { return (j % ny) * nx + i % nx; });
+  return s;
+}
+
+inline Diagonals alternating_unless(bool quads)
+{
+  return quads ? Diagonals::none : Diagonals::alternating;
+}
+
 // nx times ny squares in the xy-plane, split along alternating diagonals (or not at all)
 inline Shape plane_grid(int nx, int ny, double length = 1, bool quads = false)
 {
-  Shape s;
-  for(int j = 0; j <= ny; ++j)
-    for(int i = 0; i <= nx; ++i)
-      s.add(length * i / nx, length * j / nx, 0);
-  s.grid(nx, ny, quads, [&](int i, int j) { return j * (nx + 1) + i; });
-  return s;
+  return grid(nx, ny, alternating_unless(quads),
+              [&](int i, int j) { return Vector_3(length * i / nx, length * j / nx, 0); });
 }
 
 // a rhombus of equilateral triangles
 inline Shape equilateral_grid(int nx, int ny, double edge = 1)
 {
-  Shape s;
-  for(int j = 0; j <= ny; ++j)
-    for(int i = 0; i <= nx; ++i)
-      s.add(edge * (i + 0.5 * j), edge * 0.5 * std::sqrt(3.) * j, 0);
-  const auto at = [&](int i, int j) { return j * (nx + 1) + i; };
-  for(int j = 0; j < ny; ++j)
-    for(int i = 0; i < nx; ++i)
-      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), true);
-  return s;
+  return grid(nx, ny, Diagonals::second, [&](int i, int j) {
+    return Vector_3(edge * (i + 0.5 * j), edge * 0.5 * std::sqrt(3.) * j, 0);
+  });
 }
 
 // A strip of triangles around the z-axis: radius and height as functions of the row. `turn` is the
@@ -107,17 +126,11 @@ inline Shape revolved(int columns,
                       double turn = 2 * pi,
                       bool quads = false)
 {
-  Shape s;
-  const bool closed = std::abs(turn - 2 * pi) < 1e-12;
-  const int n = closed ? columns : columns + 1;
-  for(int j = 0; j <= rows; ++j)
-    for(int i = 0; i < n; ++i)
-    {
-      const double r = radius(double(j) / rows), a = turn * i / columns;
-      s.add(r * std::cos(a), r * std::sin(a), height(double(j) / rows));
-    }
-  s.grid(columns, rows, quads, [&](int i, int j) { return j * n + i % n; });
-  return s;
+  const auto point = [&](int i, int j) {
+    const double r = radius(double(j) / rows), a = turn * i / columns;
+    return Vector_3(r * std::cos(a), r * std::sin(a), height(double(j) / rows));
+  };
+  return grid(columns, rows, alternating_unless(quads), point, std::abs(turn - 2 * pi) < 1e-12);
 }
 
 inline Shape cylinder(
@@ -154,20 +167,14 @@ inline Shape closed_cylinder(int columns, int rows, double radius, double height
 // a tube with a wall
 inline Shape sleeve(int columns, int rows, double radius, double wall, double height)
 {
-  Shape s;
   const int rings = 2 * (rows + 1);
-  for(int j = 0; j < rings; ++j)
-    for(int i = 0; i < columns; ++i)
-    {
-      const bool is_outside = j <= rows;
-      const double r = is_outside ? radius : radius - wall, a = 2 * pi * i / columns;
-      s.add(r * std::cos(a), r * std::sin(a), height * (is_outside ? j : rings - 1 - j) / rows);
-    }
-  const auto at = [&](int i, int j) { return (j % rings) * columns + i % columns; };
-  for(int j = 0; j < rings; ++j)
-    for(int i = 0; i < columns; ++i)
-      s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-  return s;
+  const auto point = [&](int i, int j) {
+    const bool is_outside = j <= rows;
+    const double r = is_outside ? radius : radius - wall, a = 2 * pi * i / columns;
+    return Vector_3(r * std::cos(a), r * std::sin(a),
+                    height * (is_outside ? j : rings - 1 - j) / rows);
+  };
+  return grid(columns, rings, Diagonals::first, point, true, true);
 }
 
 // in the xy-plane, border outside and inside
@@ -190,26 +197,56 @@ inline Shape ramp(int columns, int rows, double turns, double rise = 0.05)
 
 inline Shape torus(int columns, int rows, double big = 1, double small = 0.4, bool quads = false)
 {
-  Shape s;
-  for(int j = 0; j < rows; ++j)
-    for(int i = 0; i < columns; ++i)
-    {
-      const double a = 2 * pi * i / columns, b = 2 * pi * j / rows;
-      const double r = big + small * std::cos(b);
-      s.add(r * std::cos(a), r * std::sin(a), small * std::sin(b));
-    }
-  s.grid(columns, rows, quads, [&](int i, int j) { return (j % rows) * columns + i % columns; });
-  return s;
+  const auto point = [&](int i, int j) {
+    const double a = 2 * pi * i / columns, b = 2 * pi * j / rows;
+    const double r = big + small * std::cos(b);
+    return Vector_3(r * std::cos(a), r * std::sin(a), small * std::sin(b));
+  };
+  return grid(columns, rows, alternating_unless(quads), point, true, true);
 }
 
 inline Shape tetrahedron()
 {
+  return {{Vector_3(1, 1, 1), Vector_3(-1, -1, 1), Vector_3(-1, 1, -1), Vector_3(1, -1, -1)},
+          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+inline Shape octahedron()
+{
   Shape s;
-  s.add(1, 1, 1);
-  s.add(-1, -1, 1);
-  s.add(-1, 1, -1);
-  s.add(1, -1, -1);
-  s.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  for(int i = 0; i < 3; ++i)
+    for(const double x : {1., -1.})
+      s.add(i == 0 ? x : 0, i == 1 ? x : 0, i == 2 ? x : 0);
+  for(const int x : {0, 1})
+    for(const int y : {2, 3})
+      for(const int z : {4, 5})
+        (x + y + z) % 2 == 0 ? s.triangle(x, y, z) : s.triangle(x, z, y);
+  return s;
+}
+
+// every triangle split into four `levels` times, new vertices on the unit sphere
+inline Shape split_on_sphere(Shape s, int levels)
+{
+  for(int l = 0; l < levels; ++l)
+  {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto inserted = middles.insert({std::minmax(a, b), int(s.points.size())});
+      if(inserted.second)
+        s.points.push_back((s.points[a] + s.points[b]).normalized());
+      return inserted.first->second;
+    };
+    const std::vector<std::vector<int>> faces = std::move(s.faces);
+    s.faces.clear();
+    for(const std::vector<int>& f : faces)
+    {
+      const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+      s.triangle(f[0], a, c);
+      s.triangle(f[1], b, a);
+      s.triangle(f[2], c, b);
+      s.triangle(a, b, c);
+    }
+  }
   return s;
 }
 
@@ -240,30 +277,7 @@ inline Shape icosphere(int levels)
       }
   for(Vector_3& p : s.points)
     p.normalize();
-  for(int l = 0; l < levels; ++l)
-  {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto inserted = middles.insert({{(std::min)(a, b), (std::max)(a, b)}, 0});
-      if(inserted.second)
-      {
-        const Vector_3 p = (s.points[a] + s.points[b]).normalized();
-        inserted.first->second = s.add(p.x(), p.y(), p.z());
-      }
-      return inserted.first->second;
-    };
-    const std::vector<std::vector<int>> faces = s.faces;
-    s.faces.clear();
-    for(const std::vector<int>& f : faces)
-    {
-      const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
-      s.triangle(f[0], a, c);
-      s.triangle(f[1], b, a);
-      s.triangle(f[2], c, b);
-      s.triangle(a, b, c);
-    }
-  }
-  return s;
+  return split_on_sphere(std::move(s), levels);
 }
 
 // a cube of n times n squares a side, split or not
@@ -289,14 +303,12 @@ inline Shape cube(int n, bool quads = false)
             p[(axis + 2) % 3] = j + dj;
             return vertex(p);
           };
-          if(quads && high)
-            s.faces.push_back({at(0, 0), at(1, 0), at(1, 1), at(0, 1)});
-          else if(quads)
-            s.faces.push_back({at(0, 0), at(0, 1), at(1, 1), at(1, 0)});
-          else if(high)
-            s.quad(at(0, 0), at(1, 0), at(1, 1), at(0, 1), (i + j) % 2 == 1);
+          const int a = at(0, 0), b = high ? at(1, 0) : at(0, 1), c = at(1, 1),
+                    d = high ? at(0, 1) : at(1, 0);
+          if(quads)
+            s.faces.push_back({a, b, c, d});
           else
-            s.quad(at(0, 0), at(0, 1), at(1, 1), at(1, 0), (i + j) % 2 == 1);
+            s.quad(a, b, c, d, (i + j) % 2 == 1);
         }
   return s;
 }
@@ -334,7 +346,7 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
       }
   const int m = (n + 1) * (n + 1);
   const auto at = [&](int i, int j) { return j * (n + 1) + i; };
-  s.grid(n, n, false, at);
+  s.grid(n, n, Diagonals::alternating, at);
   for(int j = 0; j < n; ++j)
     for(int i = 0; i < n; ++i)
       s.quad(m + at(i, j), m + at(i, j + 1), m + at(i + 1, j + 1), m + at(i + 1, j),
@@ -374,19 +386,6 @@ inline Shape meridian_sphere(int columns, int rows)
     s.triangle(j, i, bottom);
     s.triangle(last + i, last + j, top);
   }
-  return s;
-}
-
-inline Shape octahedron()
-{
-  Shape s;
-  for(int i = 0; i < 3; ++i)
-    for(const double x : {1., -1.})
-      s.add(i == 0 ? x : 0, i == 1 ? x : 0, i == 2 ? x : 0);
-  for(const int x : {0, 1})
-    for(const int y : {2, 3})
-      for(const int z : {4, 5})
-        (x + y + z) % 2 == 0 ? s.triangle(x, y, z) : s.triangle(x, z, y);
   return s;
 }
 

@@ -4,6 +4,8 @@
 
 // Micro-benchmarks of single steps, on patches of a bumpy torus.
 
+#include "../../../test/Reference_constrained_optimization/shapes.h"
+
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/Flattened_mover.h>
 #include <CGAL/Reference_constrained_optimization/internal/numerics/Block_LDLT.h>
@@ -29,29 +31,13 @@ namespace {
 
 Mesh_copy bumpy_torus(int columns, int rows)
 {
-  Mesh_copy copy;
-  const double turn = 2 * 3.14159265358979323846;
-  for(int j = 0; j < rows; ++j)
-    for(int i = 0; i < columns; ++i)
-    {
-      const double a = turn * i / columns, b = turn * j / rows;
-      const double r = 0.4 * (1 + 0.1 * std::sin(5 * a) * std::cos(3 * b));
-      copy.points.emplace_back((1 + r * std::cos(b)) * std::cos(a),
-                               (1 + r * std::cos(b)) * std::sin(a), r * std::sin(b));
-    }
-  std::vector<int> begins(1, 0), corners;
-  const auto at = [&](int i, int j) { return (j % rows) * columns + i % columns; };
-  for(int j = 0; j < rows; ++j)
-    for(int i = 0; i < columns; ++i)
-      for(const int v :
-          {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)})
-      {
-        corners.push_back(v);
-        if(corners.size() % 3 == 0)
-          begins.push_back(int(corners.size()));
-      }
-  copy.mesh = Indexed_mesh(begins, corners, columns * rows);
-  return copy;
+  const auto point = [=](int i, int j) {
+    const double a = 2 * rco_test::pi * i / columns, b = 2 * rco_test::pi * j / rows;
+    const double r = 0.4 * (1 + 0.1 * std::sin(5 * a) * std::cos(3 * b));
+    return Vector_3((1 + r * std::cos(b)) * std::cos(a), (1 + r * std::cos(b)) * std::sin(a),
+                    r * std::sin(b));
+  };
+  return copy_of(rco_test::grid(columns, rows, rco_test::Diagonals::first, point, true, true));
 }
 
 // the torus as mesh and reference, at the start of an optimization
@@ -148,13 +134,8 @@ void newton_step_in_plane(benchmark::State& state)
   const Patch patch = scene().patch(int(state.range(0)));
   const std::vector<Vector_2> start = flat(patch);
   Planar_problem problem;
-  for(const Element_set::Element& e : patch.elements)
-  {
-    problem.triples.push_back(e.vertices);
-    problem.rest_inverse.push_back(e.rest_inverse);
-    problem.metric.push_back(Eigen::Matrix2d::Identity());
-  }
-  problem.is_free = patch.is_free;
+  problem.set_elements(patch,
+                       [](const Element_set::Element&) { return Eigen::Matrix2d::Identity(); });
   Projected_newton optimizer;
   optimizer.analyze(problem);
   for(auto _ : state)

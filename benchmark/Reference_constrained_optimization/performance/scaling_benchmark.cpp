@@ -19,8 +19,6 @@
 #include <stdexcept>
 #include <string>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-
 const std::string usage =
   R"(usage: scaling_benchmark mesh [options]
 

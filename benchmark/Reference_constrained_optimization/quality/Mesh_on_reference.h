@@ -13,17 +13,16 @@
 
 class Mesh_on_reference
 {
-  typedef CGAL::Reference_constrained_optimization::internal::Mesh_copy Mesh_copy;
-  typedef CGAL::Reference_constrained_optimization::internal::Indexed_mesh Indexed_mesh;
-  typedef CGAL::Reference_constrained_optimization::internal::Reference_surface Reference_surface;
+  typedef RCO::internal::Mesh_copy Mesh_copy;
+  typedef RCO::internal::Indexed_mesh Indexed_mesh;
+  typedef RCO::internal::Reference_surface Reference_surface;
 
 public:
-  typedef CGAL::Reference_constrained_optimization::internal::Surface_point Surface_point;
-  typedef CGAL::Reference_constrained_optimization::internal::Vector_3 Vector;
+  typedef RCO::internal::Surface_point Surface_point;
+  typedef RCO::internal::Vector_3 Vector;
 
   explicit Mesh_on_reference(const Mesh& mesh)
-    : Mesh_on_reference(CGAL::Reference_constrained_optimization::internal::read_face_graph(
-        mesh, mesh.points(), "mesh"))
+    : Mesh_on_reference(RCO::internal::read_face_graph(mesh, mesh.points(), "mesh"))
   {}
 
   const Indexed_mesh& mesh() const { return m_mesh; }

@@ -23,3 +23,15 @@ struct Peer_result
   double seconds = 0;
   std::string note; // what else should be known of the run
 };
+
+// what `improve(mesh)`, which returns the note, makes of the input
+template <typename Improve>
+Peer_result timed(const Mesh& input, const Improve& improve)
+{
+  Peer_result result;
+  result.mesh = input;
+  const Stopwatch watch;
+  result.note = improve(result.mesh);
+  result.seconds = watch.seconds();
+  return result;
+}

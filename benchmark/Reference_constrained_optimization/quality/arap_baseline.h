@@ -4,6 +4,8 @@
 // constraint to the reference, as in "Volume-enhanced compatible remeshing" (Yang, Zhang, Fu, Liu),
 // as far as the paper of this package describes that. It is no reimplementation of that article.
 
+#include "../meshes.h"
+
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/measuring.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
@@ -39,8 +41,8 @@ struct Arap_parameters
 // local one left a few flips more.
 class Arap_baseline
 {
-  typedef CGAL::Reference_constrained_optimization::internal::Mesh_copy Mesh_copy;
-  typedef CGAL::Reference_constrained_optimization::internal::Reference_surface Reference_surface;
+  typedef RCO::internal::Mesh_copy Mesh_copy;
+  typedef RCO::internal::Reference_surface Reference_surface;
   typedef Eigen::SparseMatrix<double> Matrix;
   typedef Eigen::Matrix<double, Eigen::Dynamic, 3> Rows;
 
@@ -52,21 +54,20 @@ public:
     : m_reference(reference),
       m_parameters(p)
   {
-    namespace internal = CGAL::Reference_constrained_optimization::internal;
     const double scale =
-      std::sqrt(reference.area() / internal::surface_area(source.mesh, source.points));
+      std::sqrt(reference.area() / RCO::internal::surface_area(source.mesh, source.points));
     const double mean_area = reference.area() / source.mesh.number_of_faces();
     std::vector<Eigen::Triplet<double>> gradient;
     std::vector<double> weights;
     for(int f = 0; f < source.mesh.number_of_faces(); ++f)
-      for(const std::array<int, 3>& t : internal::split_face(source.mesh, source.points, f))
+      for(const std::array<int, 3>& t : RCO::internal::split_face(source.mesh, source.points, f))
       {
         std::array<int, 3> v;
         for(int i = 0; i < 3; ++i)
           v[i] = source.mesh.corner_vertex[t[i]];
         const Eigen::Matrix2d rest =
-          scale *
-          internal::triangle_shape(source.points[v[0]], source.points[v[1]], source.points[v[2]]);
+          scale * RCO::internal::triangle_shape(source.points[v[0]], source.points[v[1]],
+                                                source.points[v[2]]);
         const Eigen::Matrix2d inverse = rest.inverse();
         for(int k = 0; k < 2; ++k)
         {
@@ -180,23 +181,21 @@ private:
 
 // Deforms `mesh`, of the source's connectivity, on the reference; returns the number of iterations.
 // Border vertices move, too: meant for closed surfaces.
-template <typename Mesh>
-int arap_baseline(const Mesh& source,
-                  const Mesh& reference,
-                  Mesh& mesh,
-                  const Arap_parameters& p = Arap_parameters())
+inline int arap_baseline(const Mesh& source,
+                         const Mesh& reference,
+                         Mesh& mesh,
+                         const Arap_parameters& p = Arap_parameters())
 {
-  namespace internal = CGAL::Reference_constrained_optimization::internal;
   const auto np = CGAL::parameters::default_values();
-  const internal::Reference_surface surface(
-    internal::read_measured_mesh(reference, np, "reference"));
-  std::vector<Eigen::Vector3d> points = internal::read_measured_mesh(mesh, np, "mesh").points;
-  Arap_baseline(internal::read_measured_mesh(source, np, "source"), surface, p).run(points);
+  const RCO::internal::Reference_surface surface(
+    RCO::internal::read_measured_mesh(reference, np, "reference"));
+  std::vector<Eigen::Vector3d> points = RCO::internal::read_measured_mesh(mesh, np, "mesh").points;
+  Arap_baseline(RCO::internal::read_measured_mesh(source, np, "source"), surface, p).run(points);
   std::size_t i = 0;
   for(const auto v : mesh.vertices())
   {
     if(!mesh.is_isolated(v))
-      mesh.point(v) = typename Mesh::Point(points[i].x(), points[i].y(), points[i].z());
+      mesh.point(v) = Mesh::Point(points[i].x(), points[i].y(), points[i].z());
     ++i;
   }
   return p.number_of_iterations;

@@ -21,14 +21,28 @@
 #include <string>
 #include <utility>
 
-// what the number of iterations is chosen by: the minimum angle, and the mean where a face that cannot move
-// determines the minimum
-inline std::pair<double, double> angle_quality(const Mesh& mesh)
+// The best result of several numbers of iterations: the one with the largest minimum angle, and with the
+// largest mean where a face that cannot move determines the minimum.
+class Best_result
 {
-  const auto angles = CGAL::Reference_constrained_optimization::angle_statistics(mesh);
-  const double rounding = 1e-6;
-  return {std::round(angles.minimum / rounding), angles.mean};
-}
+public:
+  void add(const Peer_result& result)
+  {
+    const auto angles = RCO::angle_statistics(result.mesh);
+    const double rounding = 1e-6;
+    const std::pair<double, double> quality(std::round(angles.minimum / rounding), angles.mean);
+    if(quality > m_quality)
+    {
+      m_quality = quality;
+      m_result = result;
+    }
+  }
+  const Peer_result& get() const { return m_result; }
+
+private:
+  Peer_result m_result;
+  std::pair<double, double> m_quality = {-1, 0};
+};
 
 constexpr unsigned int tried_numbers_of_iterations[] = {1, 5, 10, 20, 50};
 
@@ -43,24 +57,20 @@ inline std::string iterations_text(unsigned int n)
 inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints, double time_limit)
 {
   const Stopwatch all;
-  Peer_result best;
-  std::pair<double, double> best_quality(-1, 0);
+  Best_result best;
   double seconds_per_iteration = 0;
   for(const unsigned int n : tried_numbers_of_iterations)
   {
     if(all.seconds() + n * seconds_per_iteration > time_limit)
       break;
-    Peer_result result;
-    result.mesh = input;
-    const Stopwatch watch;
-    CGAL::Polygon_mesh_processing::angle_and_area_smoothing(
-      result.mesh,
-      CGAL::parameters::number_of_iterations(n).use_area_smoothing(false).use_safety_constraints(
-        with_safety_constraints));
-    result.note = iterations_text(n);
-    result.seconds = watch.seconds();
-    const auto off =
-      CGAL::Reference_constrained_optimization::distance_to_reference(result.mesh, input);
+    Peer_result result = timed(input, [&](Mesh& mesh) {
+      CGAL::Polygon_mesh_processing::angle_and_area_smoothing(
+        mesh,
+        CGAL::parameters::number_of_iterations(n).use_area_smoothing(false).use_safety_constraints(
+          with_safety_constraints));
+      return iterations_text(n);
+    });
+    const auto off = RCO::distance_to_reference(result.mesh, input);
     if(!off.is_on_reference())
     {
       const Stopwatch projection;
@@ -74,14 +84,9 @@ inline Peer_result smooth_angles(const Mesh& input, bool with_safety_constraints
       result.note += text;
     }
     seconds_per_iteration = (std::max)(seconds_per_iteration, result.seconds / n);
-    const std::pair<double, double> quality = angle_quality(result.mesh);
-    if(quality > best_quality)
-    {
-      best_quality = quality;
-      best = result;
-    }
+    best.add(result);
   }
-  return best;
+  return best.get();
 }
 
 // keeps CGAL's relaxation from lowering the smallest angle of a star, and from inverting a face of it
@@ -122,13 +127,11 @@ private:
 // CGAL's tangential relaxation, each iteration followed by a projection
 inline Peer_result relax(const Mesh& input, bool with_guard, double time_limit)
 {
-  Peer_result best;
-  std::pair<double, double> best_quality(-1, 0);
-  double seconds = 0;
+  Best_result best;
   Mesh mesh = input;
   const Stopwatch setup;
   Mesh_on_reference on_reference(input);
-  seconds += setup.seconds();
+  double seconds = setup.seconds();
   unsigned int done = 0;
   for(const unsigned int n : tried_numbers_of_iterations)
   {
@@ -144,29 +147,21 @@ inline Peer_result relax(const Mesh& input, bool with_guard, double time_limit)
       on_reference.give(mesh);
     }
     seconds += watch.seconds();
-    const std::pair<double, double> quality = angle_quality(mesh);
-    if(quality > best_quality)
-    {
-      best_quality = quality;
-      best = {mesh, seconds, iterations_text(done)};
-    }
+    best.add({mesh, seconds, iterations_text(done)});
   }
-  return best;
+  return best.get();
 }
 
 // CGAL's isotropic remeshing, to edges as long as they are on average; border edges stay
 inline Peer_result remesh(const Mesh& input)
 {
-  const unsigned int number_of_iterations = 10;
-  Peer_result result;
-  result.mesh = input;
   const double mean_edge_length = Mesh_on_reference(input).mean_edge_length();
-  const Stopwatch watch;
-  CGAL::Polygon_mesh_processing::isotropic_remeshing(
-    faces(result.mesh), mean_edge_length, result.mesh,
-    CGAL::parameters::number_of_iterations(number_of_iterations).protect_constraints(true));
-  result.mesh.collect_garbage();
-  result.seconds = watch.seconds();
-  result.note = iterations_text(number_of_iterations);
-  return result;
+  return timed(input, [&](Mesh& mesh) {
+    const unsigned int number_of_iterations = 10;
+    CGAL::Polygon_mesh_processing::isotropic_remeshing(
+      faces(mesh), mean_edge_length, mesh,
+      CGAL::parameters::number_of_iterations(number_of_iterations).protect_constraints(true));
+    mesh.collect_garbage();
+    return iterations_text(number_of_iterations);
+  });
 }

@@ -23,8 +23,6 @@
 #include <utility>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-
 const std::string usage =
   R"(usage: compatible_benchmark pair [options]
 

@@ -26,7 +26,6 @@
 #include <string>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
 using namespace RCO::internal;
 
 namespace {

@@ -26,41 +26,32 @@ namespace peers {
 template <typename Named_parameters>
 Peer_result optimize(const Mesh& input, const Named_parameters& np)
 {
-  Peer_result result;
-  result.mesh = input;
-  const Stopwatch watch;
-  const auto r = CGAL::reference_constrained_optimize(
-    result.mesh, result.mesh, CGAL::Reference_constrained_optimization::Minimum_angle_energy(), np);
-  result.seconds = watch.seconds();
-  result.note = std::string(::name(r.status)) + ", " + iterations_text(r.number_of_iterations);
-  return result;
+  return timed(input, [&](Mesh& mesh) {
+    const auto r =
+      CGAL::reference_constrained_optimize(mesh, mesh, RCO::Minimum_angle_energy(), np);
+    return std::string(::name(r.status)) + ", " + iterations_text(r.number_of_iterations);
+  });
 }
 
 inline Peer_result smooth_stars(const Mesh& input, double exponent_factor)
 {
-  const int number_of_sweeps = 50;
-  Peer_result result;
-  result.mesh = input;
-  const Stopwatch watch;
-  Mesh_on_reference mesh(input);
-  Star_smoother(mesh, exponent_factor).run(number_of_sweeps);
-  mesh.give(result.mesh);
-  result.seconds = watch.seconds();
-  result.note = std::to_string(number_of_sweeps) + " sweeps";
-  return result;
+  return timed(input, [&](Mesh& mesh) {
+    const int number_of_sweeps = 50;
+    Mesh_on_reference on_reference(mesh);
+    Star_smoother(on_reference, exponent_factor).run(number_of_sweeps);
+    on_reference.give(mesh);
+    return std::to_string(number_of_sweeps) + " sweeps";
+  });
 }
 
 inline Peer_result constrain_softly(const Mesh& input)
 {
-  Peer_result result;
-  result.mesh = input;
-  const Stopwatch watch;
-  Mesh_on_reference mesh(input);
-  const int iterations = Soft_constraint_optimizer(mesh).run({});
-  mesh.give(result.mesh);
-  result.seconds = watch.seconds();
-  result.note = iterations_text(iterations);
-  return result;
+  return timed(input, [](Mesh& mesh) {
+    Mesh_on_reference on_reference(mesh);
+    const int iterations = Soft_constraint_optimizer(on_reference).run({});
+    on_reference.give(mesh);
+    return iterations_text(iterations);
+  });
 }
 
 } // namespace peers

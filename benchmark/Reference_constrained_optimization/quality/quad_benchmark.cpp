@@ -17,8 +17,6 @@
 #include <stdexcept>
 #include <string>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-
 const std::string usage =
   R"(usage: quad_benchmark mesh[:reference] [options]
 

@@ -18,7 +18,6 @@
 #include <string>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
 typedef Mesh::Property_map<Mesh::Edge_index, bool> Edge_map;
 
 const std::string usage =

@@ -13,8 +13,6 @@
 #include <stdexcept>
 #include <string>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-
 const std::string usage =
   R"(usage: side_by_side mesh --method NAME [options]
 

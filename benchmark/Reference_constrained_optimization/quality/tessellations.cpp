@@ -26,7 +26,6 @@
 #include <string>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
 namespace PMP = CGAL::Polygon_mesh_processing;
 typedef Kernel::Point_3 Point;
 typedef Kernel::Vector_3 Vector;

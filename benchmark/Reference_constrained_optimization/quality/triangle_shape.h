@@ -3,6 +3,8 @@
 // The shape of a triangle in space, the exponent of the paper's equation (8): |J|^2 / det J for the
 // map J from an equilateral triangle. It is 2 at best and infinite for a triangle without area.
 
+#include "../meshes.h"
+
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_mesh.h>
 
 #include <Eigen/Core>
@@ -11,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-typedef CGAL::Reference_constrained_optimization::internal::Vector_3 Vector;
+typedef RCO::internal::Vector_3 Vector;
 
 // the shape with its derivatives by one of the vertices
 struct Triangle_shape_jet

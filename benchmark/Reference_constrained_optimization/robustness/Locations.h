@@ -56,8 +56,7 @@ public:
 
   // As the measure of the same name, but with the reference's normals there. What rounding decides
   // on, as the side to which a face without area is turned, counts or does not.
-  CGAL::Reference_constrained_optimization::Orientation_defects
-  orientation_defects(bool with_doubtful) const
+  RCO::Orientation_defects orientation_defects(bool with_doubtful) const
   {
     const std::vector<Kernel::Vector_3> of_reference = vertex_normals();
     double largest = 0;
@@ -84,7 +83,7 @@ public:
       faces.push_back({n, n * sum, (std::max)(1e-9 * a * b, 1e-13 * largest * (a + b))});
       agreement += faces.back().side;
     }
-    CGAL::Reference_constrained_optimization::Orientation_defects defects;
+    RCO::Orientation_defects defects;
     const double sign = with_doubtful ? 1 : -1, slack = sign * 1e-9;
     for(const Face& f : faces)
       defects.number_of_flips += (agreement < 0 ? -f.side : f.side) < sign * 3 * f.doubt;

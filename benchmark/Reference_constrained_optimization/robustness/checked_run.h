@@ -65,24 +65,22 @@ inline bool same_connectivity(const Mesh& a, const Mesh& b)
   return true;
 }
 
-inline CGAL::Reference_constrained_optimization::Result
-call(Mesh& mesh,
-     const Mesh* reference, // none: the mesh itself
-     const Vertex_map& is_constrained,
-     const Locations::Map& locations,
-     const Run_settings& s,
-     unsigned int iterations,
-     Monotonicity_visitor& visitor)
+inline RCO::Result call(Mesh& mesh,
+                        const Mesh* reference, // none: the mesh itself
+                        const Vertex_map& is_constrained,
+                        const Locations::Map& locations,
+                        const Run_settings& s,
+                        unsigned int iterations,
+                        Monotonicity_visitor& visitor)
 {
   const Mesh& surface = reference ? *reference : mesh;
   const auto call_with = [&](const auto& own) {
-    return CGAL::reference_constrained_optimize(
-      mesh, surface, CGAL::Reference_constrained_optimization::Minimum_angle_energy(),
-      own.random_seed(s.seed)
-        .number_of_iterations(iterations)
-        .vertex_is_constrained_map(is_constrained)
-        .relax_constraints(s.relax_constraints)
-        .visitor(std::ref(visitor)));
+    return CGAL::reference_constrained_optimize(mesh, surface, RCO::Minimum_angle_energy(),
+                                                own.random_seed(s.seed)
+                                                  .number_of_iterations(iterations)
+                                                  .vertex_is_constrained_map(is_constrained)
+                                                  .relax_constraints(s.relax_constraints)
+                                                  .visitor(std::ref(visitor)));
   };
   const auto own =
     CGAL::parameters::use_on_surface_steps(s.on_surface).use_finishing_stage(s.finishing);
@@ -91,14 +89,13 @@ call(Mesh& mesh,
                                          : call_with(own);
 }
 
-inline std::size_t
-number_of_initial_defects(const CGAL::Reference_constrained_optimization::Result& r)
+inline std::size_t number_of_initial_defects(const RCO::Result& r)
 {
   return r.initial_number_of_flips + r.initial_number_of_fold_edges +
          r.initial_number_of_nonconvex_quads;
 }
 
-inline std::size_t number_of_defects(const CGAL::Reference_constrained_optimization::Result& r)
+inline std::size_t number_of_defects(const RCO::Result& r)
 {
   return r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads;
 }
@@ -115,16 +112,14 @@ enum class Vertex_freedom : char { fixed, on_reference, on_line };
 
 // What the result breaks, whatever the energy. `located` is the input with its free vertices put onto the
 // reference: that is what must not become worse.
-inline Violated_guarantees
-violated_guarantees(const Mesh& input,
-                    const Located& placed,
-                    const Located& output,
-                    const Mesh& reference,
-                    const std::vector<Vertex_freedom>& freedom,
-                    const CGAL::Reference_constrained_optimization::Result& r,
-                    std::size_t monotonicity_violations)
+inline Violated_guarantees violated_guarantees(const Mesh& input,
+                                               const Located& placed,
+                                               const Located& output,
+                                               const Mesh& reference,
+                                               const std::vector<Vertex_freedom>& freedom,
+                                               const RCO::Result& r,
+                                               std::size_t monotonicity_violations)
 {
-  namespace RCO = CGAL::Reference_constrained_optimization;
   Violated_guarantees broken;
   broken.add_if(!same_connectivity(input, output.mesh), "connectivity changed");
   std::size_t bad = 0, moved = 0;
@@ -183,10 +178,9 @@ violated_guarantees(const Mesh& input,
 // what `Minimum_angle_energy` is for
 inline void check_angles(const Mesh& placed,
                          const Mesh& output,
-                         const CGAL::Reference_constrained_optimization::Result& r,
+                         const RCO::Result& r,
                          Violated_guarantees& broken)
 {
-  namespace RCO = CGAL::Reference_constrained_optimization;
   const RCO::Angle_statistics before = RCO::angle_statistics(placed),
                               after = RCO::angle_statistics(output);
   const double rounding = 1e-6; // of a small angle that is found by its cosine
@@ -203,10 +197,9 @@ inline void check_angles(const Mesh& placed,
 // what is kept of a mechanical part that is its own reference
 inline void check_shape(const Mesh& input,
                         const Mesh& output,
-                        const CGAL::Reference_constrained_optimization::Result& r,
+                        const RCO::Result& r,
                         Violated_guarantees& broken)
 {
-  namespace RCO = CGAL::Reference_constrained_optimization;
   // where defects are repaired faces have to turn
   if(r.number_of_feature_edges == 0 || r.initial_drift > 0 || number_of_initial_defects(r) > 0 ||
      !CGAL::is_triangle_mesh(input))
@@ -232,7 +225,6 @@ inline Outcome checked_run(const Mesh& input,
                            Run_figures& figures,
                            std::string& text)
 {
-  namespace RCO = CGAL::Reference_constrained_optimization;
   Mesh mesh = input, placed = input;
   const auto constraints = [&](Mesh& m) {
     const Vertex_map map = m.add_property_map<Mesh::Vertex_index, bool>("is_constrained").first;

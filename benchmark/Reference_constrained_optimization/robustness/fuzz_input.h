@@ -119,7 +119,7 @@ private:
              : kind == 5  ? fan(a + 2, 0.1 * b, 0, b - 3)
              : kind == 6  ? pillow(a)
              : kind == 7  ? moebius(a + 3, (b + 1) / 2, b % 2 == 0)
-             : kind == 8  ? joined(sphere(a % 2), shifted(scaled(sphere(0), .1, .1, .1), b, 0, 0))
+             : kind == 8  ? joined(sphere(a % 2), scaled(sphere(0), .1), Vector_3(b, 0, 0))
              : kind == 9  ? with_spikes(plane(1 + a / 2, 1 + b / 2), 2, 0.25 * (b - 3))
              : kind == 10 ? shuffled(sphere(1), unsigned(a + 5 * b))
                           : Soup();
@@ -135,7 +135,7 @@ private:
     result.points = s.points;
     for(std::size_t f = 0; f < s.faces.size(); ++f)
     {
-      const std::vector<std::size_t>& t = s.faces[f];
+      const std::vector<int>& t = s.faces[f];
       const bool has_next = f + 1 < s.faces.size() && s.faces[f + 1].size() == 3;
       if(has_next && s.faces[f + 1][0] == t[0] && s.faces[f + 1][1] == t[2] &&
          (unless >> (f % 64)) % 2 == 0)
@@ -146,7 +146,7 @@ private:
     return result;
   }
 
-  std::size_t vertex(const Soup& s) { return m_bytes.below(unsigned(s.points.size())); }
+  int vertex(const Soup& s) { return int(m_bytes.below(unsigned(s.points.size()))); }
 
   Soup damaged(Soup s)
   {
@@ -160,8 +160,8 @@ private:
       }
       else if(kind == 1 || s.faces.empty())
       {
-        std::vector<std::size_t> face(3 + m_bytes.below(2) + m_bytes.below(32) / 31);
-        for(std::size_t& v : face)
+        std::vector<int> face(3 + m_bytes.below(2) + m_bytes.below(32) / 31);
+        for(int& v : face)
           v = vertex(s);
         s.faces.push_back(face);
       }
@@ -169,25 +169,24 @@ private:
         s.faces.erase(s.faces.begin() + std::ptrdiff_t(m_bytes.below(unsigned(s.faces.size()))));
       else if(kind == 3)
       {
-        std::vector<std::size_t>& face = s.faces[m_bytes.below(unsigned(s.faces.size()))];
+        std::vector<int>& face = s.faces[m_bytes.below(unsigned(s.faces.size()))];
         std::reverse(face.begin(), face.end());
       }
       else if(kind == 4)
       {
-        const std::size_t v = vertex(s), w = vertex(s);
-        for(std::vector<std::size_t>& face : s.faces)
+        const int v = vertex(s), w = vertex(s);
+        for(std::vector<int>& face : s.faces)
           std::replace(face.begin(), face.end(), v, w);
       }
       else
       {
-        const std::vector<std::size_t> face = s.faces[m_bytes.below(unsigned(s.faces.size()))];
+        const std::vector<int> face = s.faces[m_bytes.below(unsigned(s.faces.size()))];
         s.faces.push_back(face);
       }
     }
     s.faces.erase(std::remove_if(s.faces.begin(), s.faces.end(),
-                                 [](const std::vector<std::size_t>& f) {
-                                   return std::set<std::size_t>(f.begin(), f.end()).size() <
-                                          f.size();
+                                 [](const std::vector<int>& f) {
+                                   return std::set<int>(f.begin(), f.end()).size() < f.size();
                                  }),
                   s.faces.end());
     if(m_bytes.flag())
@@ -201,9 +200,9 @@ private:
     const bool is_flat = m_bytes.flag();
     std::mt19937 random(m_bytes.byte());
     const auto draw = [&]() { return amount * (double(random()) / 2147483648. - 1); };
-    return moved(s, [&](const Kernel::Point_3& p) {
+    return deformed(s, [&](const Vector_3& p) -> Vector_3 {
       const double x = draw(), y = draw(), z = is_flat ? 0 : draw();
-      return p + Kernel::Vector_3(x, y, z);
+      return p + Vector_3(x, y, z);
     });
   }
 
@@ -211,27 +210,21 @@ private:
   {
     for(unsigned n = m_bytes.below(8); n > 0 && !s.points.empty(); --n)
     {
-      const std::size_t v = vertex(s);
+      const int v = vertex(s);
       const unsigned kind = m_bytes.below(6);
-      Kernel::Point_3& p = s.points[v];
+      Vector_3& p = s.points[v];
       if(kind == 0)
         p = s.points[vertex(s)];
       else if(kind == 1)
       {
-        const Kernel::Point_3 a = s.points[vertex(s)], b = s.points[vertex(s)];
-        p = Kernel::Point_3(0.5 * (a.x() + b.x()), 0.5 * (a.y() + b.y()), 0.5 * (a.z() + b.z()));
+        const Vector_3 a = s.points[vertex(s)], b = s.points[vertex(s)];
+        p = 0.5 * (a + b);
       }
       else if(kind == 2)
-      {
-        const double x = m_bytes.number(), y = m_bytes.number(), z = m_bytes.number();
-        p = Kernel::Point_3(x, y, z);
-      }
+        for(int i = 0; i < 3; ++i)
+          p[i] = m_bytes.number();
       else
-      {
-        double q[3] = {p.x(), p.y(), p.z()};
-        q[kind - 3] = m_bytes.number();
-        p = Kernel::Point_3(q[0], q[1], q[2]);
-      }
+        p[int(kind) - 3] = m_bytes.number();
     }
     return s;
   }
@@ -241,19 +234,19 @@ private:
     switch(kind)
     {
     case 8:
-      return scaled(s, 1e6, 1e6, 1e6);
+      return scaled(s, 1e6);
     case 9:
-      return scaled(s, 1e-6, 1e-6, 1e-6);
+      return scaled(s, 1e-6);
     case 10:
-      return scaled(s, 1e55, 1e55, 1e55);
+      return scaled(s, 1e55);
     case 11:
-      return scaled(s, 1e-55, 1e-55, 1e-55);
+      return scaled(s, 1e-55);
     case 12:
       return scaled(s, 1, 1, 0);
     case 13:
       return scaled(s, 1e5, 1, 1);
     case 14:
-      return shifted(s, 1e6, -2e6, 7e5);
+      return shifted(s, Vector_3(1e6, -2e6, 7e5));
     case 15:
       return scaled(s, 1, 1, 1e-9);
     default:

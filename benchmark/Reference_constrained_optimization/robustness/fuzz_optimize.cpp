@@ -26,8 +26,6 @@
 #include <string>
 #include <vector>
 
-namespace RCO = CGAL::Reference_constrained_optimization;
-
 namespace {
 
 struct Fuzz_visitor : Monotonicity_visitor

@@ -126,21 +126,14 @@ private:
   void set_up_problem(const Patch& patch, const Patch_samples& samples)
   {
     const std::vector<Vector_2>& u = m_flattening.positions;
-    m_problem.triples.clear();
-    m_problem.rest_inverse.clear();
-    m_problem.metric.clear();
-    m_problem.is_free = patch.is_free;
-    find_sliding_directions(patch);
-    for(const Element_set::Element& e : patch.elements)
-    {
-      m_problem.triples.push_back(e.vertices);
-      m_problem.rest_inverse.push_back(e.rest_inverse);
+    m_problem.set_elements(patch, [&](const Element_set::Element& e) {
       const Located_vertex &a = patch.located[e.vertices[0]], &b = patch.located[e.vertices[1]],
                            &c = patch.located[e.vertices[2]];
-      m_problem.metric.push_back(surface_metric(
+      return surface_metric(
         Planar_problem::edges(u, e.vertices),
-        signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1));
-    }
+        signed_shape(a.position, b.position, c.position, a.normal + b.normal + c.normal), 1);
+    });
+    find_sliding_directions(patch);
     find_motions(patch, samples);
     const auto motion = [&](int v) -> const Tangent_frame& { return m_motions[v]; };
     m_problem.start = u;

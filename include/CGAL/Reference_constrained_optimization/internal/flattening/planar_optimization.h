@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/numerics/projected_newton.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/drift_terms.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Patch.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
 
 #include <Eigen/Core>
@@ -35,6 +36,22 @@ struct Planar_problem
   const Vector_2& origin(int v) const { return start[v]; }
   // per vertex: the unit vector along which it slides, zero if it does not; empty if none does
   std::vector<Vector_2> sliding_direction;
+
+  // elements and free vertices are those of a patch; the metric is a function of the element
+  template <typename Metric>
+  void set_elements(const Patch& patch, const Metric& metric_of)
+  {
+    triples.clear();
+    rest_inverse.clear();
+    metric.clear();
+    is_free = patch.is_free;
+    for(const Element_set::Element& e : patch.elements)
+    {
+      triples.push_back(e.vertices);
+      rest_inverse.push_back(e.rest_inverse);
+      metric.push_back(metric_of(e));
+    }
+  }
 
   // the shape of an element, and its derivative by a vertex
   Eigen::Matrix2d shape(std::size_t e, const std::vector<Vector_2>& u) const
