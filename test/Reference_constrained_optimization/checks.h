@@ -67,11 +67,12 @@ std::string values(const A& a, const B& b)
   return out.str();
 }
 
-// runs a test, and prints how much time has passed since the first one began
+// runs a test in the scope of its name, and prints how much time has passed since the first one began
 template <typename Test>
-void timed(const std::string& name, const Test& test)
+void run_test(const std::string& name, const Test& test)
 {
   static const auto start = std::chrono::steady_clock::now();
+  const Scope scope(name);
   test();
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
   std::cout << "[" << passed.count() << " s] " << name << std::endl;

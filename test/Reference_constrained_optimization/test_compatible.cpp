@@ -158,7 +158,6 @@ RCO::Result start_of(Mesh mesh,
 
 void test_energy()
 {
-  const Scope scope("the energy");
   const Shape shape = deformed(icosphere(2), bumpy), source = deformed(icosphere(2), ellipsoidal);
   const Mesh mesh = make_mesh<Mesh>(shape), q = make_mesh<Mesh>(source);
   const Shape fine = deformed(icosphere(4), bumpy); // mesh and reference differ in area
@@ -205,7 +204,6 @@ void test_energy()
 
 void test_energy_of_quads()
 {
-  const Scope scope("the energy of quads");
   Shape source = deformed(square(8, 6, true), arched);
   const Shape shape = deformed(square(8, 6, true), hilly);
   const Mesh mesh = make_mesh<Mesh>(shape);
@@ -243,7 +241,6 @@ void test_energy_of_quads()
 
 void test_energy_mismatches()
 {
-  const Scope scope("sources that do not match");
   const Shape shape = deformed(square(6, 5), hilly);
   const auto refuses = [&](const Shape& source, const std::string& text) {
     const Scope s(text);
@@ -649,7 +646,6 @@ void test_degenerate_maps()
 
 void test_map_parameters()
 {
-  const Scope scope("parameters of maps");
   const Pair pair = sphere_pair(icosphere(2), bumpy, meridian_sphere(20, 12), ellipsoidal, 7);
   const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
   const auto landmarks = descriptors(source, reference, pair);
@@ -696,7 +692,6 @@ void test_map_parameters()
 
 void test_map_errors()
 {
-  const Scope scope("landmarks that cannot be used");
   const auto refuses = [](const Pair& pair, const std::string& text,
                           std::pair<int, int> stranger = {-1, -1}) {
     const Scope s(text);
@@ -906,20 +901,20 @@ void test_shared_diagonals()
 
 int main()
 {
-  timed("the energy", test_energy);
-  timed("the energy of quads", test_energy_of_quads);
-  timed("sources that do not match", test_energy_mismatches);
-  timed("closed maps", test_closed_maps);
-  timed("disk maps", test_disk_maps);
-  timed("coarse maps", test_coarse_maps);
-  timed("random maps", test_random_maps);
-  timed("random disk maps", test_random_disk_maps);
-  timed("maps of degenerate meshes", test_degenerate_maps);
-  timed("parameters of maps", test_map_parameters);
-  timed("errors of maps", test_map_errors);
-  timed("optimization of maps", test_from_initial_meshes);
-  timed("hard starts", test_hard_starts);
-  timed("known optima", test_known_optima);
-  timed("shared diagonals", test_shared_diagonals);
+  run_test("the energy", test_energy);
+  run_test("the energy of quads", test_energy_of_quads);
+  run_test("sources that do not match", test_energy_mismatches);
+  run_test("closed maps", test_closed_maps);
+  run_test("disk maps", test_disk_maps);
+  run_test("coarse maps", test_coarse_maps);
+  run_test("random maps", test_random_maps);
+  run_test("random disk maps", test_random_disk_maps);
+  run_test("maps of degenerate meshes", test_degenerate_maps);
+  run_test("parameters of maps", test_map_parameters);
+  run_test("errors of maps", test_map_errors);
+  run_test("optimization of maps", test_from_initial_meshes);
+  run_test("hard starts", test_hard_starts);
+  run_test("known optima", test_known_optima);
+  run_test("shared diagonals", test_shared_diagonals);
   return report();
 }

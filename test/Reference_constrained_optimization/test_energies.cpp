@@ -42,7 +42,6 @@ Shape optimized(const Shape& start,
 // ends in between. Weight 0 has no effect.
 void test_attraction()
 {
-  Scope scope("attraction");
   const int n = 12;
   const Shape s = plane_grid(n, n);
   const int v = nearest(s, Vector_3(0.5, 0.5, 0));
@@ -87,7 +86,6 @@ void test_attraction()
 // Rows of a scrambled grid become straight; the sum decreases although stencils reach across patches.
 void test_wide_stencils()
 {
-  Scope scope("stencils of six vertices");
   const int n = 24;
   const Shape regular = plane_grid(n, n);
   const Shape start = scrambled(regular, 0.25, 3, onto_plane);
@@ -135,7 +133,6 @@ struct Weighted_angle_energy : RCO::Minimum_angle_energy
 
 void test_sums()
 {
-  Scope scope("sums");
   const Shape s = scrambled(icosphere(3), 0.3, 2, onto_sphere), sphere = icosphere(3);
   const auto np = params::random_seed(2);
   RCO::Result once, weighted, summed, nested;
@@ -162,7 +159,6 @@ void test_sums()
 
 void test_errors()
 {
-  Scope scope("errors");
   const Shape s = icosphere(1);
   const auto run = [&](const auto& energy) {
     Mesh mesh = make_mesh<Mesh>(s);
@@ -188,9 +184,9 @@ void test_errors()
 
 int main()
 {
-  test_sums();
-  test_attraction();
-  test_wide_stencils();
-  test_errors();
+  run_test("sums", test_sums);
+  run_test("attraction", test_attraction);
+  run_test("stencils of six vertices", test_wide_stencils);
+  run_test("errors", test_errors);
   return report();
 }

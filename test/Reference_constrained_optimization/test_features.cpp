@@ -46,7 +46,6 @@ Shape jittered_cube(int n, double amount, bool quads = false)
 // a square in which one vertex was pulled across an edge: folded, not sharp
 void test_folds()
 {
-  const Scope scope("folds");
   Shape plane = plane_grid(8, 8);
   plane.points[4 * 9 + 4] += Vector_3(0.2, 0.01, 0);
   Mesh mesh = make_mesh<Mesh>(plane);
@@ -99,7 +98,6 @@ void check_cube(const Shape& start, const Energy& energy)
 
 void test_keeping()
 {
-  const Scope scope("keeping");
   const int n = 8;
   const Shape start = jittered_cube(n, 0.3);
   check_cube(start, RCO::Minimum_angle_energy());
@@ -135,7 +133,6 @@ void test_keeping()
 // Strips that nothing can open: the mean of the angles does not fall, the shape stays.
 void test_strips()
 {
-  const Scope scope("strips");
   for(const int columns : {24, 60})
     for(const unsigned int seed : {0, 1, 2, 3})
     {
@@ -155,7 +152,6 @@ void test_strips()
 // Rounds of few edges, and sheets that are thin against their edges.
 void test_coarse_parts()
 {
-  const Scope scope("coarse parts");
   // edges of 36 and 40 degrees are no noise, and one of nine turns by 40 but for rounding
   for(const int columns : {9, 10, 12})
     for(const int rows : {1, 5})
@@ -368,7 +364,6 @@ Shape coin(int columns, int steps)
 
 void test_rounded_parts()
 {
-  const Scope scope("rounded parts");
   double least_volume = 1; // without the limits of parts
   for(const int steps : {5, 7, 12})
   {
@@ -387,11 +382,11 @@ void test_rounded_parts()
 
 int main()
 {
-  test_folds();
-  test_keeping();
-  test_strips();
-  test_coarse_parts();
-  test_rounded_parts();
+  run_test("folds", test_folds);
+  run_test("keeping", test_keeping);
+  run_test("strips", test_strips);
+  run_test("coarse parts", test_coarse_parts);
+  run_test("rounded parts", test_rounded_parts);
   const RCO::Quad_regularity_energy regularity(1);
   const RCO::Quad_angle_energy angle;
   for(const bool on_surface : {true, false})

@@ -325,7 +325,6 @@ void test_overlap()
 
 void test_injectivity_checks()
 {
-  const Scope scope("injectivity");
   const Shape plane = plane_grid(4, 4);
   const Indexed_mesh mesh = indexed(plane);
   std::vector<Vector_2> u;
@@ -538,7 +537,6 @@ void test_walk()
 // A quad whose diagonal is an edge already, around a vertex of two faces: no flattening is injective.
 void test_double_edge()
 {
-  const Scope scope("an edge twice");
   const std::vector<Vector_3> points = {Vector_3(0.5, 0.1, 0), Vector_3(0, 0, 0), Vector_3(1, 0, 0),
                                         Vector_3(0.5, 1, 0), Vector_3(0.5, -1, 0)};
   const internal::Indexed_mesh polygons({0, 3, 6, 10}, {1, 0, 2, 1, 2, 3, 0, 1, 4, 2}, 5);
@@ -677,7 +675,6 @@ void test_map_to_reference_on_sheets()
 // their edges' length.
 void test_map_to_reference_on_plane()
 {
-  const Scope scope("map_to_reference on a plane");
   Shape fine = plane_grid(24, 24);
   Random random(6);
   Shape damaged = fine;
@@ -714,13 +711,13 @@ void test_map_to_reference_on_plane()
 
 int main()
 {
-  test_injectivity_checks();
-  test_walk();
-  test_flattenings();
-  test_conformal_maps();
-  test_overlap();
-  test_double_edge();
-  test_map_to_reference_on_sheets();
-  test_map_to_reference_on_plane();
+  run_test("injectivity", test_injectivity_checks);
+  run_test("walk", test_walk);
+  run_test("flattenings", test_flattenings);
+  run_test("conformal maps", test_conformal_maps);
+  run_test("overlap", test_overlap);
+  run_test("an edge twice", test_double_edge);
+  run_test("map to reference on sheets", test_map_to_reference_on_sheets);
+  run_test("map_to_reference on a plane", test_map_to_reference_on_plane);
   return report();
 }

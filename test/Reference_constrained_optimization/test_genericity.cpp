@@ -125,7 +125,6 @@ void check_locations(Mesh mesh, const R& reference, bool relaxes)
 
 void test_locations()
 {
-  const Scope scope("locations");
   const Shape regular = torus(30, 14), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
   check_locations(make_mesh<Mesh>(rough), make_mesh<Mesh>(regular), false);
   check_locations(make_mesh<Mesh>(rough), make_mesh<CGAL::Polyhedron_3<Kernel>>(regular), false);
@@ -173,7 +172,6 @@ optimize_part(Mesh& mesh, const Mesh& reference, const NamedParameters& np, cons
 
 void test_ranges()
 {
-  const Scope scope("ranges of faces");
   typedef CGAL::Sequential_tag Tag;
   const auto none = params::default_values();
   const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
@@ -280,7 +278,6 @@ void test_ranges()
 // triangles and quads side by side, with an energy that is defined on both
 void test_mixed_faces()
 {
-  const Scope scope("triangles and quads");
   const Shape quads = torus(30, 14, 1, 0.4, true), triangles = torus(30, 14);
   Shape mixed = quads;
   mixed.faces.clear();
@@ -383,7 +380,6 @@ void check_places(const Shape& shape, const Shape& regular, bool is_own, const O
 
 void test_places()
 {
-  const Scope scope("units and places");
   const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
   const auto angles = [](auto& mesh, const Mesh& reference, double) {
     return CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
@@ -441,7 +437,6 @@ void test_places()
 // The number of folds does not increase where edges are nearly folded. (Found by a fuzzer.)
 void test_nearly_folded()
 {
-  const Scope scope("ridges at the limit of a fold");
   for(const double cosine : {-0.5, -0.5001, -0.4999, -0.498, -0.4965, -0.49})
   {
     const double angle = std::acos(cosine);
@@ -472,11 +467,11 @@ void test_nearly_folded()
 
 int main()
 {
-  test_models();
-  test_places();
-  test_nearly_folded();
-  test_mixed_faces();
-  test_locations();
-  test_ranges();
+  run_test("models", test_models);
+  run_test("units and places", test_places);
+  run_test("ridges at the limit of a fold", test_nearly_folded);
+  run_test("triangles and quads", test_mixed_faces);
+  run_test("locations", test_locations);
+  run_test("ranges of faces", test_ranges);
   return report();
 }

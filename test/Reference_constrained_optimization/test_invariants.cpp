@@ -132,7 +132,6 @@ void test_random_steps(bool has_short_steps)
 // The vertices of faces that a step inverts are violating, and the step is reduced.
 void test_inversion()
 {
-  Scope scope("inversion");
   const Shape plane = equilateral_grid(6, 6);
   Scene scene(scrambled(plane, 0.2, 1, onto_plane), plane);
   Mover_to mover{std::vector<Vector_3>(scene.patch.vertices.size(), Vector_3::Zero()),
@@ -173,6 +172,6 @@ int main()
     typedef decltype(std::tuple_cat(internal::Local_invariants(), std::tuple<Short_steps>())) Local;
     test_random_steps<internal::Backtracking_with<Local, internal::Sum_invariants>>(true);
   }
-  test_inversion();
+  run_test("inversion", test_inversion);
   return report();
 }

@@ -180,7 +180,7 @@ void test_flattenings()
 
 int main()
 {
-  timed("landmark trees", test_landmark_trees);
-  timed("flattenings", test_flattenings);
+  run_test("landmark trees", test_landmark_trees);
+  run_test("flattenings", test_flattenings);
   return report();
 }

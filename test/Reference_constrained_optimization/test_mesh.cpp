@@ -24,7 +24,6 @@ using namespace rco_test;
 // Points near the reference are not rounded by the transformation to the frame and back.
 void test_frame()
 {
-  const Scope scope("frame");
   using namespace RCO::internal;
   const Shape shape = scrambled(torus(40, 20), 0.3, 4, onto_torus(1, 0.4));
   const Frame here(copy_of(shape));
@@ -86,7 +85,6 @@ void test_frame()
 
 void test_point_index()
 {
-  const Scope scope("point index");
   Random random(6);
   std::vector<Vector_3> points;
   for(int v = 0; v < 1000; ++v)
@@ -131,7 +129,6 @@ void test_point_index()
 
 void test_surface_metric()
 {
-  const Scope scope("surface metric");
   Random random(9);
   for(int i = 0; i < 500; ++i)
   {
@@ -234,9 +231,9 @@ void test_indexed_meshes()
 
 int main()
 {
-  test_frame();
-  test_point_index();
-  test_surface_metric();
-  test_indexed_meshes();
+  run_test("frame", test_frame);
+  run_test("point index", test_point_index);
+  run_test("surface metric", test_surface_metric);
+  run_test("indexed meshes", test_indexed_meshes);
   return report();
 }

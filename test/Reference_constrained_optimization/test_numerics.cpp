@@ -27,7 +27,6 @@ Vector_4 as_vector(const Matrix_2& m) { return Eigen::Map<const Vector_4>(m.data
 
 void test_time_of_collapse()
 {
-  const Scope scope("time_of_collapse");
   Random random(4);
   const double infinity = std::numeric_limits<double>::infinity();
   int finite = 0, infinite = 0;
@@ -195,7 +194,6 @@ void test_factorization_of(const std::string& name,
 
 void test_factorization()
 {
-  const Scope scope("Block_LDLT");
   Random random(4);
   internal::Block_LDLT factorization; // one for all: nothing of a graph stays for the next
   const auto test = [&](const std::string& name, int n, const Pairs& pairs) {
@@ -235,7 +233,6 @@ void test_factorization()
 
 void test_newton_system()
 {
-  const Scope scope("Newton_system");
   Random random(5);
   const Shape grid = plane_grid(5, 4);
   const Indexed_mesh mesh = indexed(grid);
@@ -593,9 +590,9 @@ void test_planar_optimizer(const Density& density, double best, const std::strin
 
 int main()
 {
-  test_time_of_collapse();
-  test_factorization();
-  test_newton_system();
+  run_test("time_of_collapse", test_time_of_collapse);
+  run_test("Block_LDLT", test_factorization);
+  run_test("Newton_system", test_newton_system);
   test_planar_optimizer(RCO::Exponential_MIPS_density(1), std::exp(2.), "exponential MIPS, k = 1");
   test_planar_optimizer(RCO::Exponential_MIPS_density(0.5), std::exp(1.),
                         "exponential MIPS, k = 0.5");

@@ -187,7 +187,6 @@ void test_exponential_mips(double k)
 
 void test_symmetric_dirichlet()
 {
-  const Scope scope("Symmetric_Dirichlet_density");
   const RCO::Symmetric_Dirichlet_density density;
   Random random(3);
   for(const double s : {1., 1 - 1e-7, 0.8, 0.3, 0.1, 0.03, 0.015, 0.001, 0., -0.01, -0.1, -0.9})
@@ -216,7 +215,6 @@ void test_symmetric_dirichlet()
 
 void test_drift_barrier()
 {
-  const Scope scope("drift barrier");
   const internal::Drift_barrier barrier(3);
   for(const double bound : {0.01, 1., 7.})
   {
@@ -339,7 +337,6 @@ void test_barrier(const std::string& name, const Density& density, double steepn
 // The derivatives of a stencil are compared with differences of its value, along the frames.
 void test_stencil_derivatives()
 {
-  Scope scope("stencil derivatives");
   Random random(4);
   const Shape s = scrambled(plane_grid(8, 8, 0.125), 0.2, 5, onto_plane);
   const internal::Mesh_copy copy = copy_of(s);
@@ -380,13 +377,13 @@ int main()
 {
   for(const double k : {0.5, 1., 4.})
     test_exponential_mips(k);
-  test_symmetric_dirichlet();
-  test_drift_barrier();
+  run_test("Symmetric_Dirichlet_density", test_symmetric_dirichlet);
+  run_test("drift barrier", test_drift_barrier);
   for(const double steepness : {6, 12, 30})
   {
     test_barrier("exponential MIPS", RCO::Exponential_MIPS_density(1), steepness);
     test_barrier("symmetric Dirichlet", RCO::Symmetric_Dirichlet_density(), steepness);
   }
-  test_stencil_derivatives();
+  run_test("stencil derivatives", test_stencil_derivatives);
   return report();
 }

@@ -179,7 +179,6 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
 // Steps end on the surface, as long as it goes on there.
 void test_tangent_steps()
 {
-  const Scope scope("tangent steps");
   const internal::Reference_surface plane(copy_of(plane_grid(5, 5)));
   Random random(1);
   for(int i = 0; i < 200; ++i)
@@ -202,7 +201,6 @@ void test_tangent_steps()
 // A search lowers the energy and adds no defect; whatever is not searched stays.
 void test_pattern_search()
 {
-  const Scope scope("pattern search");
   const Shape regular = torus(24, 12);
   const RCO::Exponential_MIPS_density density(1);
   for(const bool is_bounded : {false, true})
@@ -247,7 +245,6 @@ void test_pattern_search()
 // Clusters are found, and nothing else, and their vertices are separated, on the surface and on its border.
 void test_clusters()
 {
-  const Scope scope("clusters");
   const int n = 8;
   for(const int center : {4 * (n + 1) + 4, 4})
     for(const double size : {1e-3, 1e-12})
@@ -263,7 +260,7 @@ void test_clusters()
         shape.points[v] = middle + size * (shape.points[v] - middle);
       const auto found =
         internal::vertex_clusters(mesh, [&](int v) -> const Vector_3& { return shape.points[v]; });
-      RCO_CHECK_EQUAL(found.size(), std::size_t(1));
+      RCO_CHECK_EQUAL(found.size(), 1u);
       RCO_CHECK(std::set<int>(found[0].begin(), found[0].end()) == expected);
       Located_shape scene(shape, plane_grid(n, n));
       scene.relax_border();
@@ -290,8 +287,8 @@ int main()
   test_on_surface_steps("a blob", deformed(icosphere(3), bumpy), bumpy(Vector_3(1, 0, 0)));
   test_on_surface_steps("a hill", deformed(square(20, 20), hilly), hilly(Vector_3(0.6, 0.4, 0)));
   test_on_surface_steps("a border", deformed(square(20, 20), hilly), Vector_3(0.1, 0.1, 0));
-  test_tangent_steps();
-  test_pattern_search();
-  test_clusters();
+  run_test("tangent steps", test_tangent_steps);
+  run_test("pattern search", test_pattern_search);
+  run_test("clusters", test_clusters);
   return report();
 }

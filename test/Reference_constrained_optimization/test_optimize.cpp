@@ -325,7 +325,6 @@ struct Corner_energy
 
 void test_quads()
 {
-  const Scope scope("quads");
   Shape grid = plane_grid(12, 10, 1, true);
   Shape rough = scrambled(grid, 0.3, 2, onto_plane);
   for(Shape* s : {&grid, &rough})
@@ -429,7 +428,6 @@ void test_small_meshes()
 
 void test_constraints()
 {
-  const Scope scope("constraints");
   {
     // some vertices, a few of them off the reference
     Shape shape = scrambled(icosphere(3), 0.3, 5, onto_sphere);
@@ -489,7 +487,6 @@ void test_constraints()
 
 void test_degenerate_faces()
 {
-  const Scope scope("degenerate faces");
   const Shape regular = icosphere(3);
   Shape shape = scrambled(regular, 0.25, 8, onto_sphere);
   const Indexed_mesh mesh = indexed(shape);
@@ -553,7 +550,6 @@ void test_degenerate_faces()
 // a thin sheet, where the other side is nearer than the next vertex: no vertex changes sides
 void test_thin_sheet()
 {
-  const Scope scope("a thin double sheet");
   for(const double gap : {1e-2, 1e-5})
   {
     const Shape fine = double_sheet(30, gap, 0.04);
@@ -592,7 +588,6 @@ void test_thin_sheet()
 
 void test_determinism()
 {
-  const Scope scope("determinism");
   const Shape regular = torus(40, 16), rough = scrambled(regular, 0.3, 12, onto_torus(1, 0.4));
   Options options;
   options.iterations = 4;
@@ -658,7 +653,6 @@ private:
 // is to give up soon.
 void test_nothing_to_gain()
 {
-  const Scope scope("nothing to gain");
   Mesh mesh = make_mesh<Mesh>(closed_cylinder(48, 1, 1, 30));
   const double smallest = smallest_angle(make_shape(mesh));
   long questions = 0;
@@ -673,7 +667,6 @@ void test_nothing_to_gain()
 
 void test_endings()
 {
-  const Scope scope("endings");
   const Shape regular = torus(30, 12);
   // on the reference already, so that the start is known
   const Shape rough = [&] {
@@ -762,7 +755,6 @@ void test_endings()
 // a larger exponent raises the smallest angle
 void test_exponents()
 {
-  const Scope scope("exponents");
   const Shape regular = icosphere(2);
   const Shape rough = scrambled(torus(30, 12), 0.3, 15, onto_torus(1, 0.4));
   for(const double k : {0.5, 2.})
@@ -893,18 +885,18 @@ void test_drift(const std::string& name)
 
 int main()
 {
-  timed("recoveries", test_recoveries);
-  timed("quads", test_quads);
-  timed("small meshes", test_small_meshes);
-  timed("constraints", test_constraints);
-  timed("degenerate faces", test_degenerate_faces);
-  timed("thin sheet", test_thin_sheet);
-  timed("determinism", test_determinism);
-  timed("nothing to gain", test_nothing_to_gain);
-  timed("endings", test_endings);
-  timed("exponents", test_exponents);
-  timed("drift", [] { test_drift("fandisk.off"); });
-  timed("data", [] {
+  run_test("recoveries", test_recoveries);
+  run_test("quads", test_quads);
+  run_test("small meshes", test_small_meshes);
+  run_test("constraints", test_constraints);
+  run_test("degenerate faces", test_degenerate_faces);
+  run_test("thin sheet", test_thin_sheet);
+  run_test("determinism", test_determinism);
+  run_test("nothing to gain", test_nothing_to_gain);
+  run_test("endings", test_endings);
+  run_test("exponents", test_exponents);
+  run_test("drift", [] { test_drift("fandisk.off"); });
+  run_test("data", [] {
     test_data("blobby.off", 6);
     test_data("elephant.off", 4);
     test_data("mesh_with_border.off", 6);

@@ -31,7 +31,6 @@ auto parameter(const Parameters& np, const Tag& tag)
 
 void test_chains()
 {
-  const Scope scope("chains of named parameters");
   {
     const auto np = params::developability_threshold(0.1).drift_bound(0.2).number_of_iterations(5);
     RCO_CHECK_EQUAL(parameter(np, tags::developability_threshold), 0.1);
@@ -121,7 +120,6 @@ struct Patch_sizes : RCO::Default_visitor
 
 void test_calls()
 {
-  const Scope scope("calls");
   const Shape regular = icosphere(2), rough = scrambled(regular, 0.3, 1, onto_sphere);
   const Mesh reference = make_mesh<Mesh>(regular), start = make_mesh<Mesh>(rough);
   const RCO::Minimum_angle_energy energy;
@@ -528,9 +526,9 @@ void test_odd_data()
 
 int main()
 {
-  test_chains();
-  test_calls();
-  test_bad_data();
-  test_odd_data();
+  run_test("chains of named parameters", test_chains);
+  run_test("calls", test_calls);
+  run_test("bad data", test_bad_data);
+  run_test("odd data", test_odd_data);
   return report();
 }

@@ -277,7 +277,6 @@ void check_isometric_elements(const Energy& energy, const Shape& shape, double v
 
 void test_elements()
 {
-  const Scope scope("elements");
   // a unit square, turned ones, and a unit equilateral triangle
   Shape mixed;
   mixed.add(0, 0, 0);
@@ -334,7 +333,6 @@ void test_elements()
 
 void test_errors()
 {
-  const Scope scope("errors");
   const double infinity = std::numeric_limits<double>::infinity();
   for(const double bad : {0., -1., -infinity, infinity, std::nan("")})
   {
@@ -366,7 +364,6 @@ void test_errors()
 
 void test_plane_recovery()
 {
-  const Scope scope("a plane grid becomes squares again");
   const int n = 14;
   const Shape regular = plane_grid(n, n, 1, true), fine = ground(37, 33);
   const Shape rough = scrambled(regular, 0.35, 1, onto_plane);
@@ -410,7 +407,6 @@ void test_plane_recovery()
 
 void test_tube_recovery()
 {
-  const Scope scope("a tube of squares");
   const int columns = 32, rows = 12;
   const double side = 2 * std::sin(pi / columns), height = rows * side;
   const Shape regular = cylinder(columns, rows, 1, height, 2 * pi, true);
@@ -444,7 +440,6 @@ void test_tube_recovery()
 // where no mesh is all squares: as good as from the regular one
 void test_curved_recovery()
 {
-  const Scope scope("curved");
   const auto as_good = [](const Shape& regular, const Shape& rough, const Shape& fine,
                           const auto& energy, const std::string& name) {
     const Scope s(name);
@@ -566,7 +561,6 @@ void test_invariants()
 
 void test_same()
 {
-  const Scope scope("the same again");
   Options options;
   options.iterations = 4;
   options.patch_size = 60;
@@ -761,7 +755,6 @@ void test_near_degenerate()
 
 void test_off_reference()
 {
-  const Scope scope("off the reference");
   const auto check = [](const Shape& shape, const Shape& reference, double largest,
                         double tolerance, const auto& energy, Options options) {
     std::size_t held = 0;
@@ -813,7 +806,6 @@ void test_off_reference()
 
 void test_measures()
 {
-  const Scope scope("measures");
   // rectangles of 1 by 3: as many edges of either length, but for the border
   Shape bricks = plane_grid(4, 4, 4, true);
   for(Vector_3& p : bricks.points)
@@ -877,16 +869,16 @@ void test_measures()
 
 int main()
 {
-  timed("elements", test_elements);
-  timed("errors", test_errors);
-  timed("measures", test_measures);
-  timed("plane", test_plane_recovery);
-  timed("tube", test_tube_recovery);
-  timed("curved", test_curved_recovery);
-  timed("invariants", test_invariants);
-  timed("same", test_same);
-  timed("untangling", test_untangling);
-  timed("near degenerate", test_near_degenerate);
-  timed("off the reference", test_off_reference);
+  run_test("elements", test_elements);
+  run_test("errors", test_errors);
+  run_test("measures", test_measures);
+  run_test("plane", test_plane_recovery);
+  run_test("tube", test_tube_recovery);
+  run_test("curved", test_curved_recovery);
+  run_test("invariants", test_invariants);
+  run_test("same", test_same);
+  run_test("untangling", test_untangling);
+  run_test("near degenerate", test_near_degenerate);
+  run_test("off the reference", test_off_reference);
   return report();
 }

@@ -115,7 +115,6 @@ void test_drift()
 // by fuzzing).
 void test_distance_beside_needle()
 {
-  const Scope scope("distance beside a needle");
   const double h = std::sqrt(0.5), z = -1e-9 * h;
   Shape surface;
   surface.points = {Vector_3(0, -h, z), Vector_3(-h, 0, z),    Vector_3(h, h, 0),
@@ -179,7 +178,6 @@ void test_orientation()
 // other may be more nearly parallel: waves that cross a plane, and a mesh of their chords.
 void test_sheets_turned_against_each_other()
 {
-  const Scope scope("sheets turned against each other");
   const auto waves = [](int nx, int ny) {
     Shape shape = plane_grid(nx, ny);
     for(Vector_3& p : shape.points)
@@ -195,7 +193,6 @@ void test_sheets_turned_against_each_other()
 
 void test_normal_deviation()
 {
-  const Scope scope("normal deviation");
   for(const Shape& shape :
       {icosphere(3), cube(4), cube(5, true), turned_round(cube(3)), closed_cylinder(200, 3, 1, 2)})
   {
@@ -238,7 +235,6 @@ void test_normal_deviation()
 
 void test_feature_deviation()
 {
-  const Scope scope("feature deviation");
   // the same edges, whatever the connectivity
   for(const Shape& shape : {cube(4), cube(10), cube(7, true)})
   {
@@ -287,7 +283,6 @@ void test_feature_deviation()
 // a component whose vertices are all in one place is a point of the surface
 void test_collapsed_component()
 {
-  const Scope scope("collapsed component");
   Shape shape = plane_grid(4, 4);
   for(int i = 0; i < 4; ++i)
     shape.add(0.3, 0.3, 5);
@@ -305,7 +300,6 @@ void test_collapsed_component()
 // proportion to its square would be 25 times as long.
 void test_large_fans()
 {
-  const Scope scope("large fans");
   const auto time = [](int columns) {
     const Mesh mesh = make_mesh<Mesh>(closed_cylinder(columns, 1, 1, 1));
     const Mesh moved =
@@ -391,17 +385,17 @@ void test_estimate_and_intersections()
 
 int main()
 {
-  test_angles();
-  test_distortion();
-  test_drift();
-  test_distance_beside_needle();
-  test_orientation();
-  test_sheets_turned_against_each_other();
-  test_normal_deviation();
-  test_feature_deviation();
-  test_collapsed_component();
-  test_large_fans();
-  test_quads();
-  test_estimate_and_intersections();
+  run_test("angles", test_angles);
+  run_test("distortion", test_distortion);
+  run_test("drift", test_drift);
+  run_test("distance beside a needle", test_distance_beside_needle);
+  run_test("orientation", test_orientation);
+  run_test("sheets turned against each other", test_sheets_turned_against_each_other);
+  run_test("normal deviation", test_normal_deviation);
+  run_test("feature deviation", test_feature_deviation);
+  run_test("collapsed component", test_collapsed_component);
+  run_test("large fans", test_large_fans);
+  run_test("quads", test_quads);
+  run_test("estimate and intersections", test_estimate_and_intersections);
   return report();
 }

@@ -23,7 +23,6 @@ using namespace rco_test;
 // Every vertex is where R is closest; what is there already, or may not move, keeps its bits.
 void test_locations()
 {
-  const Scope scope("locations");
   const Shape sphere = icosphere(3);
   Shape start = scrambled(icosphere(2), 0.2, 1, [](const Vector_3& p) { return p; });
   const int on_reference = nearest(start, Vector_3::UnitX());
@@ -53,7 +52,6 @@ void test_locations()
 // Vertices and edges that are constrained, and those outside a range of faces, are not free.
 void test_constraints()
 {
-  const Scope scope("constraints");
   const int n = 6;
   Mesh mesh = make_mesh<Mesh>(plane_grid(n, n));
   auto vertex_map = mesh.add_property_map<Mesh::Vertex_index, bool>("v:fixed", false).first;
@@ -88,7 +86,6 @@ void test_constraints()
 // Lines of R are found in a mesh that has other vertices.
 void test_traced_features()
 {
-  const Scope scope("traced features");
   const Shape shape = cube(4), reference = cube(6);
   const internal::Reference_surface surface(copy_of(reference));
   const auto is_on_edge = [](const Shape& s, const Indexed_mesh& mesh, int c) {
@@ -108,7 +105,6 @@ void test_traced_features()
 // Vertices of the border slide along R's border, but for its corners.
 void test_sliding()
 {
-  const Scope scope("sliding");
   const int n = 8;
   Located_shape scene(plane_grid(n, n), plane_grid(5, 5));
   const RCO::Result result = scene.relax_border();
@@ -144,10 +140,10 @@ void test_moments()
 
 int main()
 {
-  test_locations();
-  test_constraints();
-  test_traced_features();
-  test_sliding();
-  test_moments();
+  run_test("locations", test_locations);
+  run_test("constraints", test_constraints);
+  run_test("traced features", test_traced_features);
+  run_test("sliding", test_sliding);
+  run_test("moments", test_moments);
   return report();
 }

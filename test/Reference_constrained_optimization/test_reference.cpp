@@ -34,7 +34,6 @@ void check_closest(const Vector_3& p, const Vector_3& q, const std::array<Vector
 
 void test_closest_barycentric()
 {
-  const Scope scope("closest_barycentric");
   Random random(1);
   int inside = 0, on_side = 0, at_corner = 0;
   for(int i = 0; i < 20000; ++i)
@@ -101,7 +100,6 @@ void test_closest_barycentric()
 // a point of a long needle is found there, whichever vertex comes first
 void test_closest_in_needles()
 {
-  const Scope scope("closest_barycentric in needles");
   Random random(11);
   for(int i = 0; i < 3000; ++i)
   {
@@ -151,7 +149,6 @@ void test_closest(const Shape& shape, const std::string& name)
 // quads with opposite vertices in one place: split between these, they would have no area
 void test_folded_quads()
 {
-  const Scope scope("quads folded flat");
   for(const int pinched : {0, 1})
   {
     Shape shape;
@@ -186,7 +183,6 @@ void test_degenerate_edges()
 // on a convex surface there is one local minimum for a point outside
 void test_descend_on_convex_surfaces()
 {
-  const Scope scope("descend on convex surfaces");
   Random random(3);
   for(const Shape& shape : {icosphere(3), closed_cylinder(24, 10, 0.5, 1), cube(6)})
   {
@@ -232,7 +228,6 @@ bool is_at_rim(const Vector_3& p)
 
 void test_descend_on_double_sheet()
 {
-  const Scope scope("descend on a double sheet");
   const int n = 40;
   const double gap = 1e-4;
   for(const double wave : {0., 0.05})
@@ -267,7 +262,6 @@ void test_descend_on_double_sheet()
 
 void test_normals()
 {
-  const Scope scope("normals");
   internal::Reference_surface sphere = surface_of(icosphere(3));
   Random random(7);
   for(int i = 0; i < 500; ++i)
@@ -320,7 +314,6 @@ void test_normals()
 
 void test_is_reachable()
 {
-  const Scope scope("is_reachable");
   const Shape shape = joined(icosphere(2), tetrahedron(), Vector_3(5, 0, 0));
   const internal::Reference_surface surface = surface_of(shape);
   const Indexed_mesh& mesh = surface.mesh();
@@ -373,7 +366,6 @@ void test_is_reachable()
 
 void test_bad_references()
 {
-  const Scope scope("bad references");
   Shape flat;
   flat.add(0, 0, 0);
   flat.add(1, 0, 0);
@@ -438,7 +430,6 @@ double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], cons
 
 void test_progress()
 {
-  const Scope scope("progress in a wedge");
   Random random(4);
   for(int i = 0; i < 1000; ++i)
   {
@@ -509,7 +500,6 @@ void test_face_in_direction(const std::string& name, const Shape& shape)
 
 void test_lines()
 {
-  Scope scope("lines");
   Polyline_set lines;
   const Vector_3 a(0, 0, 0), b(1, 0, 0), c(1, 2, 0);
   const int first = lines.add(a, b, -1), second = lines.add(b, c, -1), third = lines.add(c, a, -1);
@@ -562,7 +552,6 @@ std::size_t number_of_features(const Shape& shape)
 
 void test_detection()
 {
-  const Scope scope("detection");
   const int n = 6;
   for(const bool quads : {false, true})
   {
@@ -602,7 +591,6 @@ Shape fading_roof(int columns, int rows)
 // A line that is sharp where it begins is followed to where it is hardly bent, and nothing else is taken.
 void test_fading_lines()
 {
-  const Scope scope("fading lines");
   const int columns = 60;
   Mesh mesh = make_mesh<Mesh>(fading_roof(columns, 6));
   const auto map = detected(mesh).second;
@@ -621,7 +609,6 @@ void test_fading_lines()
 // Normal noise turns slivers, not the planes and lines of a part.
 void test_noisy_parts()
 {
-  const Scope scope("noisy parts");
   for(const int columns : {10, 12, 24})
   {
     const Shape part = closed_cylinder(columns, 1, 1, 4);
@@ -634,7 +621,6 @@ void test_noisy_parts()
 // Nowhere more than the default, nor than a part of what is there, and no jumps.
 void test_local_bounds()
 {
-  const Scope scope("local bounds");
   Shape shape = plane_grid(30, 30);
   for(Vector_3& p : shape.points) // finer and finer towards a corner
     p = Vector_3(std::pow(p.x(), 3), std::pow(p.y(), 3), 0);
@@ -660,20 +646,20 @@ void test_local_bounds()
 
 int main()
 {
-  test_closest_barycentric();
-  test_closest_in_needles();
+  run_test("closest_barycentric", test_closest_barycentric);
+  run_test("closest_barycentric in needles", test_closest_in_needles);
   test_closest(icosphere(2), "a sphere");
   test_closest(double_sheet(8, 1e-3, 0.05), "a double sheet");
   test_closest(joined(torus(16, 8), tetrahedron(), Vector_3(1, 0, 0)), "two components");
   test_closest(plane_grid(6, 5, 1, true), "quads");
-  test_folded_quads();
-  test_degenerate_edges();
-  test_descend_on_convex_surfaces();
-  test_descend_on_double_sheet();
-  test_normals();
-  test_is_reachable();
-  test_bad_references();
-  test_progress();
+  run_test("quads folded flat", test_folded_quads);
+  run_test("degenerate edges", test_degenerate_edges);
+  run_test("descend on convex surfaces", test_descend_on_convex_surfaces);
+  run_test("descend on a double sheet", test_descend_on_double_sheet);
+  run_test("normals", test_normals);
+  run_test("is_reachable", test_is_reachable);
+  run_test("bad references", test_bad_references);
+  run_test("progress in a wedge", test_progress);
   Shape bumps = plane_grid(9, 7);
   Random random(8);
   for(Vector_3& p : bumps.points)
@@ -682,10 +668,10 @@ int main()
   test_face_in_direction("torus",
                          scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));
   test_face_in_direction("tetrahedron", tetrahedron());
-  test_lines();
-  test_detection();
-  test_fading_lines();
-  test_noisy_parts();
-  test_local_bounds();
+  run_test("lines", test_lines);
+  run_test("detection", test_detection);
+  run_test("fading lines", test_fading_lines);
+  run_test("noisy parts", test_noisy_parts);
+  run_test("local bounds", test_local_bounds);
   return report();
 }

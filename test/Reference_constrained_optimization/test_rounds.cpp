@@ -104,7 +104,6 @@ void check_fractions(const internal::Patch& patch,
 
 void test_vertex_step_sizes()
 {
-  const Scope scope("vertex step sizes");
   const Shape shape = scrambled(plane_grid(24, 20), 0.3, 2, onto_plane);
   const int n = int(shape.points.size());
   Random random(3);
@@ -213,7 +212,7 @@ void test_round(internal::Moves moves, const Shape& start, const Shape& regular)
 
 int main()
 {
-  test_vertex_step_sizes();
+  run_test("vertex step sizes", test_vertex_step_sizes);
   const Shape ring = torus(32, 16);
   for(const internal::Moves moves :
       {internal::Moves::on_surface, internal::Moves::flattened, internal::Moves::pattern_search})

@@ -62,7 +62,6 @@ Shape rotated(Shape shape, const Eigen::Matrix3d& r)
 
 void test_cone_proxy()
 {
-  const Scope scope("cone proxy");
   Random random(1);
   for(int i = 0; i < 20; ++i)
   {
@@ -420,7 +419,6 @@ void test_patches()
 // patches of a round are disjoint, and every component has one
 void test_rounds()
 {
-  const Scope scope("rounds");
   const Shape shape = joined(plane_grid(6, 6), icosphere(1), Vector_3(5, 0, 0));
   const Indexed_mesh mesh = indexed(shape);
   internal::Selection_parameters parameters;
@@ -440,7 +438,6 @@ void test_rounds()
 
 void test_touched()
 {
-  const Scope scope("touched");
   internal::Selection_parameters parameters;
   parameters.maximum_patch_size = 1000;
   // the whole mesh is one patch: its own border is no boundary, so all is touched
@@ -460,7 +457,6 @@ void test_touched()
 
 void test_threshold()
 {
-  const Scope scope("developability threshold");
   internal::Selection_parameters parameters;
   parameters.maximum_patch_size = 1000;
   parameters.exempt_size = 0;
@@ -550,7 +546,6 @@ void test_threshold()
 // faces without area neither stop the growing nor break the geometry
 void test_degenerate_faces()
 {
-  const Scope scope("degenerate faces");
   Shape shape = plane_grid(8, 8);
   shape.points[40] = shape.points[41];
   const Indexed_mesh mesh = indexed(shape);
@@ -643,7 +638,6 @@ divided(const Indexed_mesh& mesh, const std::vector<char>& is_selected, int size
 
 void test_partition()
 {
-  const Scope scope("partition");
   {
     const Scope s("regular torus");
     const Indexed_mesh mesh = indexed(torus(80, 40));
@@ -700,7 +694,6 @@ void test_partition()
 // The faces around vertices, ring by ring, whether they are few or many.
 void test_active_set()
 {
-  const Scope scope("active set");
   const Indexed_mesh mesh = indexed(torus(30, 12));
   Random random(6);
   for(const double share : {0., 0.002, 0.2})
@@ -731,13 +724,13 @@ void test_active_set()
 
 int main()
 {
-  test_cone_proxy();
-  test_patches();
-  test_rounds();
-  test_touched();
-  test_threshold();
-  test_degenerate_faces();
-  test_partition();
-  test_active_set();
+  run_test("cone proxy", test_cone_proxy);
+  run_test("patches", test_patches);
+  run_test("rounds", test_rounds);
+  run_test("touched", test_touched);
+  run_test("developability threshold", test_threshold);
+  run_test("degenerate faces", test_degenerate_faces);
+  run_test("partition", test_partition);
+  run_test("active set", test_active_set);
   return report();
 }

@@ -48,7 +48,6 @@ struct Scene : Located_shape
 
 void test_distances()
 {
-  const Scope scope("distances");
   Scene scene;
   const double drift = scene.searched_drift();
   RCO_CHECK_LESS(0.01, drift);
@@ -79,7 +78,6 @@ void test_distances()
 // What a patch gathered is stored again, and can be restored.
 void test_store()
 {
-  const Scope scope("store");
   Scene scene;
   const double before = scene.drift();
   const internal::Patch patch = scene.whole_patch();
@@ -109,7 +107,6 @@ void test_store()
 // a plane over another one
 void test_normal_deviation()
 {
-  const Scope scope("normal deviation");
   const Shape plane = plane_grid(3, 3);
   for(const double angle : {0., 10., 40.})
   {
@@ -137,8 +134,8 @@ void test_normal_deviation()
 
 int main()
 {
-  test_distances();
-  test_store();
-  test_normal_deviation();
+  run_test("distances", test_distances);
+  run_test("store", test_store);
+  run_test("normal deviation", test_normal_deviation);
   return report();
 }

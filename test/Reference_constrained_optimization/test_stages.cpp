@@ -95,7 +95,6 @@ struct Largest_patches : RCO::Default_visitor
 // not if the caller bounds their size.
 void test_restarts()
 {
-  const Scope scope("restarting");
   const Shape ring = torus(80, 40), start = scrambled(ring, 0.3, 13, onto_torus(1, 0.4));
   const Mesh reference = make_mesh<Mesh>(ring);
   for(const unsigned int maximum : {0u, 2000u, 2000000000u})
@@ -174,7 +173,6 @@ void test_clusters(double size)
 // Statistics that follow changes are those of all faces anew, and what was saved can be restored.
 void test_statistics()
 {
-  const Scope scope("statistics");
   const Shape regular = icosphere(2);
   Located_shape scene(scrambled(regular, 0.3, 2, onto_sphere), regular);
   const auto densities =
@@ -224,7 +222,7 @@ void test_statistics()
 
 int main()
 {
-  test_restarts();
+  run_test("restarting", test_restarts);
   for(const double size : {1e-4, 1e-11, 1e-13})
     test_clusters(size);
   const Shape ring = torus(50, 20), ball = icosphere(3), square = plane_grid(24, 24);
@@ -236,6 +234,6 @@ int main()
   if(!blobby.faces.empty())
     test_finishing("blobby", blobby, blobby, 2);
 #endif
-  test_statistics();
+  run_test("statistics", test_statistics);
   return report();
 }

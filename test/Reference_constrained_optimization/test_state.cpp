@@ -162,7 +162,7 @@ int main()
   test_patches(scrambled(torus(24, 12), 0.2, 1, onto_torus(1, 0.4)), torus(24, 12),
                RCO::Minimum_angle_energy());
   test_patches(plane_grid(12, 10, 1, true), plane_grid(12, 10), RCO::Quad_angle_energy());
-  test_measures();
-  test_stencil_terms();
+  run_test("measures", test_measures);
+  run_test("stencil terms", test_stencil_terms);
   return report();
 }

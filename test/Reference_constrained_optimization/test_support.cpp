@@ -191,7 +191,7 @@ int main()
   test_patches<CGAL::Parallel_tag>();
   test_waiting<CGAL::Parallel_tag>();
 #endif
-  test_interruption();
+  rco_test::run_test("interruption", test_interruption);
   RCO_CHECK_EQUAL(internal::text_of(1e-9), std::string("1e-09"));
   return rco_test::report();
 }

@@ -19,7 +19,6 @@ using namespace rco_test;
 // Defects at the end are repaired locally.
 void test_defect_repair()
 {
-  const Scope scope("repair");
   using namespace RCO::internal;
   typedef Defect_repair<CGAL::Sequential_tag> Sequential_defect_repair;
   typedef std::vector<Located_vertex> Vertices;
@@ -141,7 +140,6 @@ void test_defect_repair()
 // Points that did not move keep their bits, others are those of the state in the user's coordinates.
 void test_points()
 {
-  const Scope scope("points");
   const auto placed = [](Shape shape) {
     return deformed(
       shape, [](const Vector_3& p) -> Vector_3 { return 0.7 * p + Vector_3(1e5, 0.1, -3e4); });
@@ -165,7 +163,7 @@ void test_points()
 
 int main()
 {
-  test_defect_repair();
-  test_points();
+  run_test("repair", test_defect_repair);
+  run_test("points", test_points);
   return report();
 }
