@@ -19,6 +19,7 @@
 #include <boost/graph/graph_traits.hpp>
 
 #include <fstream>
+#include <iostream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -54,6 +55,8 @@ Mesh make_mesh(const Shape& shape)
   }
   return mesh;
 }
+
+inline Mesh mesh_of(const Shape& shape) { return make_mesh<Mesh>(shape); }
 
 template <typename Mesh>
 Shape make_shape(const Mesh& mesh)
@@ -107,6 +110,15 @@ inline Shape read_off(const std::string& name)
     shape.faces.push_back(corners);
   }
   return in ? shape : Shape();
+}
+
+// one of CGAL's meshes; where it is not installed, an empty shape, and it is told that it is skipped
+inline Shape read_data(const std::string& name)
+{
+  const Shape shape = read_off(std::string(RCO_DATA_DIR) + "/" + name);
+  if(shape.faces.empty())
+    std::cout << name << " was not found, skipped" << std::endl;
+  return shape;
 }
 
 } // namespace rco_test

@@ -104,8 +104,8 @@ optimized(const Shape& source, const Shape& start, const Shape& reference, bool 
 {
   Outcome out;
   out.before = start;
-  Mesh mesh = make_mesh<Mesh>(start);
-  const Mesh q = make_mesh<Mesh>(source), r = make_mesh<Mesh>(reference);
+  Mesh mesh = mesh_of(start);
+  const Mesh q = mesh_of(source), r = mesh_of(reference);
   const Energy energy(q);
   const RCO::Orientation_defects defects = RCO::orientation_defects(mesh, r);
   Recorder recorder;
@@ -159,13 +159,13 @@ RCO::Result start_of(Mesh mesh,
 void test_energy()
 {
   const Shape shape = deformed(icosphere(2), bumpy), source = deformed(icosphere(2), ellipsoidal);
-  const Mesh mesh = make_mesh<Mesh>(shape), q = make_mesh<Mesh>(source);
+  const Mesh mesh = mesh_of(shape), q = mesh_of(source);
   const Shape fine = deformed(icosphere(4), bumpy); // mesh and reference differ in area
-  const Mesh reference = make_mesh<Mesh>(fine);
+  const Mesh reference = mesh_of(fine);
   RCO_CHECK_LESS(area(shape), 0.995 * area(fine));
   const RCO::Result result = start_of(mesh, reference, q);
   const double energy = result.initial_energy;
-  RCO_CHECK_EQUAL(result.initial_number_of_flips, std::size_t(0));
+  RCO_CHECK_EQUAL(result.initial_number_of_flips, 0u);
   RCO_CHECK_EQUAL(result.final_energy, energy);
   RCO_CHECK_NEAR(energy,
                  2 * RCO::distortion_statistics(q, mesh, params::default_values(),
@@ -180,7 +180,7 @@ void test_energy()
   Shape large = source;
   for(Vector_3& p : large.points)
     p *= 10;
-  const Mesh large_q = make_mesh<Mesh>(large);
+  const Mesh large_q = mesh_of(large);
   RCO_CHECK_NEAR(start_of(mesh, reference, large_q).initial_energy, energy, 1e-10 * energy);
   const auto own_sizes = params::use_equal_areas(false);
   RCO_CHECK_NEAR(start_of(mesh, reference, q, own_sizes).initial_energy,
@@ -197,7 +197,7 @@ void test_energy()
   Shape turned = source;
   for(std::size_t f = 0; f < turned.faces.size(); ++f)
     std::rotate(turned.faces[f].begin(), turned.faces[f].begin() + f % 3, turned.faces[f].end());
-  const Mesh turned_q = make_mesh<Mesh>(turned);
+  const Mesh turned_q = mesh_of(turned);
   RCO_CHECK(make_shape(turned_q).faces != make_shape(q).faces);
   RCO_CHECK_NEAR(start_of(mesh, reference, turned_q).initial_energy, energy, 1e-10 * energy);
 }
@@ -206,7 +206,7 @@ void test_energy_of_quads()
 {
   Shape source = deformed(square(8, 6, true), arched);
   const Shape shape = deformed(square(8, 6, true), hilly);
-  const Mesh mesh = make_mesh<Mesh>(shape);
+  const Mesh mesh = mesh_of(shape);
   double shorter_first = 0;
   Shape split = source;
   split.faces.clear();
@@ -224,17 +224,17 @@ void test_energy_of_quads()
     std::rotate(turned.faces[f].begin(), turned.faces[f].begin() + f % 4, turned.faces[f].end());
   Shape reference = deformed(square(30, 24), hilly);
   const double expected = mean_dirichlet(split, shape, std::sqrt(area(reference) / area(split)));
-  const Mesh r = make_mesh<Mesh>(reference);
+  const Mesh r = mesh_of(reference);
   Mesh moving = mesh;
   const RCO::Result result =
-    CGAL::reference_constrained_optimize(moving, r, Energy(make_mesh<Mesh>(source)));
+    CGAL::reference_constrained_optimize(moving, r, Energy(mesh_of(source)));
   // free vertices were moved onto the reference first
   RCO_CHECK_NEAR(result.initial_energy, expected, 0.02 * expected);
   RCO_CHECK_LESS(result.final_energy, result.initial_energy);
-  RCO_CHECK_EQUAL(result.number_of_flips, std::size_t(0));
+  RCO_CHECK_EQUAL(result.number_of_flips, 0u);
   Mesh same = mesh;
   const RCO::Result again = CGAL::reference_constrained_optimize(
-    same, mesh, Energy(make_mesh<Mesh>(turned), params::use_equal_areas(false)),
+    same, mesh, Energy(mesh_of(turned), params::use_equal_areas(false)),
     params::number_of_iterations(0u));
   RCO_CHECK_NEAR(again.initial_energy, mean_dirichlet(split, shape, 1), 1e-9 * expected);
 }
@@ -244,11 +244,11 @@ void test_energy_mismatches()
   const Shape shape = deformed(square(6, 5), hilly);
   const auto refuses = [&](const Shape& source, const std::string& text) {
     const Scope s(text);
-    Mesh mesh = make_mesh<Mesh>(shape);
+    Mesh mesh = mesh_of(shape);
     const Shape before = make_shape(mesh);
-    RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(shape),
-                                                          Energy(make_mesh<Mesh>(source))),
-                     RCO::Invalid_input, text);
+    RCO_CHECK_THROWS(
+      CGAL::reference_constrained_optimize(mesh, mesh_of(shape), Energy(mesh_of(source))),
+      RCO::Invalid_input, text);
     RCO_CHECK(same_bits(before, make_shape(mesh)));
   };
   const int n = int(shape.faces.size());
@@ -278,7 +278,7 @@ void test_energy_mismatches()
     source.add(2, 1, 0);
     refuses(source, "vertices, the mesh " + std::to_string(shape.points.size()));
     source.triangle(5, int(shape.points.size()), 6); // behind the last face, along the border
-    const Mesh closed = make_mesh<Mesh>(source);
+    const Mesh closed = mesh_of(source);
     RCO_CHECK_EQUAL(int(faces(closed).size()), n + 1);
     refuses(source, "face " + std::to_string(n) + " of the source has no counterpart");
   }
@@ -291,7 +291,7 @@ void test_energy_mismatches()
     for(int g = n - 1; g >= 0; --g)
       if(gram(source, source.faces[g]).determinant() < 1e-20)
         first = g;
-    RCO_CHECK_THROWS(Energy(make_mesh<Mesh>(source)), RCO::Invalid_input,
+    RCO_CHECK_THROWS(Energy(mesh_of(source)), RCO::Invalid_input,
                      "face " + std::to_string(first) +
                        " of the source has a triangle without area");
   }
@@ -304,7 +304,7 @@ void test_known_optimum(const std::string& name, const Shape& shape, std::uint64
   const internal::Reference_surface surface(copy_of(shape));
   const Shape start = wandered(shape, surface, 24, 0.3, seed, displacement);
   const Outcome out = optimized(shape, start, shape);
-  RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
+  RCO_CHECK_EQUAL(out.result.initial_number_of_flips, 0u);
   RCO_CHECK_LESS(0.4, displacement);
   RCO_CHECK_LESS(5., out.result.initial_energy);
   RCO_CHECK_LESS_EQUAL(out.distortion.mean, 2.001);
@@ -406,9 +406,9 @@ Mapped mapped(const Pair& pair, const std::string& name, unsigned int seed = 0)
 {
   const Scope scope("the map of " + name);
   const Source source = make_mesh<Source>(pair.source);
-  const Mesh reference = make_mesh<Mesh>(pair.reference);
+  const Mesh reference = mesh_of(pair.reference);
   const Shape source_before = make_shape(source), reference_before = make_shape(reference);
-  Mesh output = make_mesh<Mesh>(tetrahedron()); // goes
+  Mesh output = mesh_of(tetrahedron()); // goes
   Mapped m;
   try
   {
@@ -633,7 +633,7 @@ void test_degenerate_maps()
     const Scope scope(bad_source ? "degenerate source" : "degenerate reference");
     Pair pair = sphere_pair(icosphere(3), ellipsoidal, meridian_sphere(36, 20), ellipsoidal, 4);
     make_bad(bad_source ? pair.source : pair.reference, {100, 250, 400, 600});
-    const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+    const Mesh source = mesh_of(pair.source), reference = mesh_of(pair.reference);
     Mesh output;
     const RCO::Initial_mesh_report report =
       RCO::compatible_initial_mesh(source, reference, descriptors(source, reference, pair), output);
@@ -647,7 +647,7 @@ void test_degenerate_maps()
 void test_map_parameters()
 {
   const Pair pair = sphere_pair(icosphere(2), bumpy, meridian_sphere(20, 12), ellipsoidal, 7);
-  const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+  const Mesh source = mesh_of(pair.source), reference = mesh_of(pair.reference);
   const auto landmarks = descriptors(source, reference, pair);
   double previous = std::numeric_limits<double>::infinity();
   Shape six;
@@ -658,7 +658,7 @@ void test_map_parameters()
       source, reference, landmarks, output, params::number_of_iterations(n));
     RCO_CHECK(report.number_of_trees <= n);
     if(n == 1)
-      RCO_CHECK_EQUAL(report.number_of_trees, std::size_t(1));
+      RCO_CHECK_EQUAL(report.number_of_trees, 1u);
     // the first trees are the same
     RCO_CHECK_LESS_EQUAL(report.capped_energy, previous);
     previous = report.capped_energy;
@@ -695,11 +695,11 @@ void test_map_errors()
   const auto refuses = [](const Pair& pair, const std::string& text,
                           std::pair<int, int> stranger = {-1, -1}) {
     const Scope s(text);
-    const Mesh source = make_mesh<Mesh>(pair.source), reference = make_mesh<Mesh>(pair.reference);
+    const Mesh source = mesh_of(pair.source), reference = mesh_of(pair.reference);
     auto landmarks = descriptors(source, reference, pair);
     if(stranger.first >= 0)
       landmarks[1] = {Mesh::Vertex_index(stranger.first), Mesh::Vertex_index(stranger.second)};
-    Mesh output = make_mesh<Mesh>(octahedron());
+    Mesh output = mesh_of(octahedron());
     const Shape before = make_shape(output);
     RCO_CHECK_THROWS(RCO::compatible_initial_mesh(source, reference, landmarks, output),
                      RCO::Invalid_input, text);
@@ -782,7 +782,7 @@ void test_from_initial_meshes()
     RCO_CHECK_LESS(plain.result.final_energy, plain.result.initial_energy);
     RCO_CHECK_EQUAL(plain.result.number_of_flattened_patches,
                     plain.result.number_of_accepted_patches);
-    RCO_CHECK_LESS(std::size_t(0), plain.result.number_of_flattened_patches);
+    RCO_CHECK_LESS(0u, plain.result.number_of_flattened_patches);
     RCO_CHECK_NEAR(plain.distortion.mean, out.distortion.mean, 0.1 * out.distortion.mean);
     for(const Outcome* o : {&out, &plain})
       std::cout << "optimization of " << name << (o == &out ? "" : ", flattened only")
@@ -888,8 +888,8 @@ void test_shared_diagonals()
     {
       const Scope scope(std::string(on_surface ? "on the surface" : "flattened") +
                         (is_own ? ", its own reference" : ""));
-      Mesh mesh = make_mesh<Mesh>(skewed);
-      const Mesh reference = make_mesh<Mesh>(shape);
+      Mesh mesh = mesh_of(skewed);
+      const Mesh reference = mesh_of(shape);
       const Energy energy(reference);
       const RCO::Result r = CGAL::reference_constrained_optimize(
         mesh, is_own ? mesh : reference, energy, params::use_on_surface_steps(on_surface));

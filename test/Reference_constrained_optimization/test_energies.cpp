@@ -28,7 +28,7 @@ Shape optimized(const Shape& start,
                 const NamedParameters& np,
                 RCO::Result* result = nullptr)
 {
-  Mesh mesh = make_mesh<Mesh>(start), reference = make_mesh<Mesh>(surface);
+  Mesh mesh = mesh_of(start), reference = mesh_of(surface);
   const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, energy, np);
   RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
   RCO_CHECK_LESS_EQUAL(r.number_of_flips, r.initial_number_of_flips);
@@ -104,7 +104,7 @@ void test_wide_stencils()
     return sum;
   };
   // the first summand has its minimum at the input
-  const RCO::Compatible_remeshing_energy stay(make_mesh<Mesh>(start));
+  const RCO::Compatible_remeshing_energy stay(mesh_of(start));
   for(const int size : {0, 60}) // many small patches, too
   {
     const Shape straight = optimized(start, regular, RCO::sum(1, stay, 10, rows),
@@ -145,7 +145,7 @@ void test_sums()
   RCO_CHECK_EQUAL(summed.final_energy, 4 * once.final_energy);
 
   // a second term with elements, of another density
-  const RCO::Compatible_remeshing_energy isometry(make_mesh<Mesh>(sphere));
+  const RCO::Compatible_remeshing_energy isometry(mesh_of(sphere));
   const auto sum = RCO::sum(2, RCO::Minimum_angle_energy(), 0.5, RCO::sum(2, isometry));
   optimized(s, sphere, sum, np, &nested);
   RCO::Result angle, map;
@@ -161,7 +161,7 @@ void test_errors()
 {
   const Shape s = icosphere(1);
   const auto run = [&](const auto& energy) {
-    Mesh mesh = make_mesh<Mesh>(s);
+    Mesh mesh = mesh_of(s);
     try
     {
       CGAL::reference_constrained_optimize(mesh, mesh, energy);

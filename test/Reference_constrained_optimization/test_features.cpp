@@ -48,13 +48,12 @@ void test_folds()
 {
   Shape plane = plane_grid(8, 8);
   plane.points[4 * 9 + 4] += Vector_3(0.2, 0.01, 0);
-  Mesh mesh = make_mesh<Mesh>(plane);
-  const auto before = RCO::orientation_defects(mesh, make_mesh<Mesh>(plane_grid(8, 8)));
-  RCO_CHECK_LESS(std::size_t(0), before.total());
-  const RCO::Result r =
-    CGAL::reference_constrained_optimize(mesh, mesh, RCO::Minimum_angle_energy());
-  RCO_CHECK_EQUAL(r.number_of_feature_edges, std::size_t(0));
-  RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, std::size_t(0));
+  Mesh mesh = mesh_of(plane);
+  const auto before = RCO::orientation_defects(mesh, mesh_of(plane_grid(8, 8)));
+  RCO_CHECK_LESS(0u, before.total());
+  const RCO::Result r = improve_angles(mesh, mesh);
+  RCO_CHECK_EQUAL(r.number_of_feature_edges, 0u);
+  RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, 0u);
 }
 
 struct Outcome
@@ -66,7 +65,7 @@ struct Outcome
 template <typename Energy, typename NamedParameters>
 Outcome run(const Shape& start, const Energy& energy, const NamedParameters& np)
 {
-  Mesh mesh = make_mesh<Mesh>(start);
+  Mesh mesh = mesh_of(start);
   const RCO::Result r = CGAL::reference_constrained_optimize(mesh, mesh, energy, np);
   return {make_shape(mesh), r};
 }
@@ -84,9 +83,9 @@ void check_cube(const Shape& start, const Energy& energy)
       RCO_CHECK(same_bits(p, q));
     slid += number_of_planes(p) == 2 && (p - q).norm() > 1e-3;
   }
-  RCO_CHECK_LESS(std::size_t(5), slid);
+  RCO_CHECK_LESS(5u, slid);
   RCO_CHECK_LESS(after.result.final_energy, after.result.initial_energy);
-  const Mesh before = make_mesh<Mesh>(start), mesh = make_mesh<Mesh>(after.shape);
+  const Mesh before = mesh_of(start), mesh = mesh_of(after.shape);
   RCO_CHECK_LESS(RCO::normal_deviation(mesh, before).maximum, 1e-6);
   RCO_CHECK_NEAR(RCO::feature_deviation(before, mesh).kept, 1, 1e-9);
 
@@ -107,23 +106,23 @@ void test_keeping()
   RCO_CHECK_EQUAL(run(start, energy, params::random_seed(0)).result.number_of_feature_edges,
                   std::size_t(12 * n));
   const Outcome free = run(start, energy, params::detect_features(false));
-  RCO_CHECK_EQUAL(free.result.number_of_feature_edges, std::size_t(0));
+  RCO_CHECK_EQUAL(free.result.number_of_feature_edges, 0u);
   std::size_t left = 0;
   for(std::size_t v = 0; v < start.points.size(); ++v)
     left += number_of_planes(start.points[v]) > number_of_planes(free.shape.points[v]);
-  RCO_CHECK_LESS(std::size_t(0), left); // the test can fail
+  RCO_CHECK_LESS(0u, left); // the test can fail
 
   // the caller's own lines
-  Mesh mesh = make_mesh<Mesh>(start);
+  Mesh mesh = mesh_of(start);
   const auto none = mesh.add_property_map<Mesh::Edge_index, bool>("e:none", false).first;
   const RCO::Result r =
     CGAL::reference_constrained_optimize(mesh, mesh, energy, params::edge_is_constrained_map(none));
-  RCO_CHECK_EQUAL(r.number_of_feature_edges, std::size_t(0));
+  RCO_CHECK_EQUAL(r.number_of_feature_edges, 0u);
 
   // of another reference
-  Mesh other = make_mesh<Mesh>(start);
+  Mesh other = mesh_of(start);
   const RCO::Result traced =
-    CGAL::reference_constrained_optimize(other, make_mesh<Mesh>(jittered_cube(11, 0.2)), energy);
+    CGAL::reference_constrained_optimize(other, mesh_of(jittered_cube(11, 0.2)), energy);
   RCO_CHECK_EQUAL(traced.number_of_feature_edges, std::size_t(12 * n));
   for(std::size_t v = 0; v < start.points.size(); ++v)
     RCO_CHECK_EQUAL(number_of_planes(start.points[v]),
@@ -143,7 +142,7 @@ void test_strips()
       const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(seed));
       RCO_CHECK_LESS_EQUAL(mean_smallest_angle(start), mean_smallest_angle(after.shape) + 1e-9);
       RCO_CHECK_LESS_EQUAL(smallest_angle(start), smallest_angle(after.shape));
-      const Mesh before = make_mesh<Mesh>(start), mesh = make_mesh<Mesh>(after.shape);
+      const Mesh before = mesh_of(start), mesh = mesh_of(after.shape);
       RCO_CHECK_EQUAL(RCO::normal_deviation(mesh, before).share_above_45, 0.);
       RCO_CHECK_LESS(0.99, RCO::feature_deviation(before, mesh).kept);
     }
@@ -157,10 +156,10 @@ void test_coarse_parts()
     for(const int rows : {1, 5})
     {
       const Shape start = closed_cylinder(columns, rows, 1, 3);
-      const Mesh before = make_mesh<Mesh>(start);
+      const Mesh before = mesh_of(start);
       const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
       RCO_CHECK_LESS_EQUAL(std::size_t(2 * columns), after.result.number_of_feature_edges);
-      const Mesh mesh = make_mesh<Mesh>(after.shape);
+      const Mesh mesh = mesh_of(after.shape);
       RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
       RCO_CHECK_LESS(0.95, RCO::feature_deviation(before, mesh).kept);
       RCO_CHECK_LESS(RCO::normal_deviation(mesh, before).share_above_20, 0.005);
@@ -172,8 +171,7 @@ void test_coarse_parts()
       const Shape start = sleeve(24, 4, 3, wall, 6);
       const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(seed));
       RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
-      RCO_CHECK_EQUAL(RCO::number_of_self_intersecting_pairs(make_mesh<Mesh>(after.shape)),
-                      std::size_t(0));
+      RCO_CHECK_EQUAL(RCO::number_of_self_intersecting_pairs(mesh_of(after.shape)), 0u);
       RCO_CHECK_LESS_EQUAL(mean_smallest_angle(start), mean_smallest_angle(after.shape) + 1e-9);
     }
 }
@@ -200,7 +198,7 @@ void check_case(const Case& test, const Energy& energy, bool on_surface, double 
   Scope scope(test.name + (on_surface ? ", on the surface" : ", flattened"));
   const auto run = [&](bool relax) {
     M mesh = make_mesh<M>(test.start);
-    const Mesh reference = make_mesh<Mesh>(test.reference);
+    const Mesh reference = mesh_of(test.reference);
     auto is_constrained = get(CGAL::dynamic_edge_property_t<bool>(), mesh);
     auto index = get(CGAL::dynamic_vertex_property_t<int>(), mesh);
     int i = 0;
@@ -218,8 +216,7 @@ void check_case(const Case& test, const Energy& energy, bool on_surface, double 
                                              .edge_is_constrained_map(is_constrained)
                                              .relax_constraints(relax));
     RCO_CHECK(r.final_energy < r.initial_energy);
-    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads,
-                    std::size_t(0));
+    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads, 0u);
     RCO_CHECK(RCO::distance_to_reference(mesh, reference).is_on_reference());
     return std::make_pair(make_shape(mesh), RCO::corner_angle_statistics(mesh).standard_deviation);
   };
@@ -244,7 +241,7 @@ void check_case(const Case& test, const Energy& energy, bool on_surface, double 
     else
       RCO_CHECK(same_bits(before, after));
   }
-  RCO_CHECK_LESS(std::size_t(5), moved);
+  RCO_CHECK_LESS(5u, moved);
   // what is regular but for the places of the vertices on the lines becomes regular
   RCO_CHECK_LESS(relaxed.second, largest_deviation);
   RCO_CHECK_LESS(2 * relaxed.second, fixed.second);
@@ -369,12 +366,11 @@ void test_rounded_parts()
   {
     const Shape start = coin(24, steps);
     const Outcome after = run(start, RCO::Minimum_angle_energy(), params::random_seed(0));
-    RCO_CHECK_EQUAL(after.result.number_of_feature_edges, std::size_t(0));
+    RCO_CHECK_EQUAL(after.result.number_of_feature_edges, 0u);
     const Outcome free = run(start, RCO::Minimum_angle_energy(), params::detect_features(false));
-    const Mesh before = make_mesh<Mesh>(start);
+    const Mesh before = mesh_of(start);
     RCO_CHECK_NEAR(volume(after.shape) / volume(start), 1., 0.01);
-    RCO_CHECK_LESS(RCO::normal_deviation(make_mesh<Mesh>(after.shape), before).share_above_20,
-                   0.005);
+    RCO_CHECK_LESS(RCO::normal_deviation(mesh_of(after.shape), before).share_above_20, 0.005);
     least_volume = (std::min)(least_volume, volume(free.shape) / volume(start));
   }
   RCO_CHECK_LESS(least_volume, 0.97); // the test can fail

@@ -37,15 +37,13 @@ void test_model(const std::string& name, double unit_in_last_place)
 {
   const Scope scope(name);
   const Shape regular = torus(24, 12), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
-  Mesh expected = make_mesh<Mesh>(rough);
+  Mesh expected = mesh_of(rough);
   // the number type rounds what goes in: compare with what the mesh holds
   M mesh = make_mesh<M>(rough), reference = make_mesh<M>(regular);
-  expected = make_mesh<Mesh>(make_shape(mesh));
-  const Mesh expected_reference = make_mesh<Mesh>(make_shape(reference));
-  const RCO::Result r =
-    CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
-  const RCO::Result e =
-    CGAL::reference_constrained_optimize(expected, expected_reference, RCO::Minimum_angle_energy());
+  expected = mesh_of(make_shape(mesh));
+  const Mesh expected_reference = mesh_of(make_shape(reference));
+  const RCO::Result r = improve_angles(mesh, reference);
+  const RCO::Result e = improve_angles(expected, expected_reference);
   RCO_CHECK_EQUAL(r.final_energy, e.final_energy);
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   const Shape a = make_shape(mesh), b = make_shape(expected);
@@ -56,13 +54,10 @@ void test_model(const std::string& name, double unit_in_last_place)
                            unit_in_last_place * std::abs(b.points[v](i)));
   // its own reference
   M own = make_mesh<M>(regular);
-  RCO_CHECK(CGAL::reference_constrained_optimize(own, own, RCO::Minimum_angle_energy())
-              .number_of_free_vertices > 0);
+  RCO_CHECK(improve_angles(own, own).number_of_free_vertices > 0);
   // mesh and reference of two types
-  Mesh mixed = make_mesh<Mesh>(rough);
-  RCO_CHECK_LESS(CGAL::reference_constrained_optimize(mixed, reference, RCO::Minimum_angle_energy())
-                   .final_energy,
-                 r.initial_energy);
+  Mesh mixed = mesh_of(rough);
+  RCO_CHECK_LESS(improve_angles(mixed, reference).final_energy, r.initial_energy);
   // part of it
   M part = make_mesh<M>(rough);
   std::vector<typename boost::graph_traits<M>::face_descriptor> range;
@@ -98,9 +93,7 @@ void check_locations(Mesh mesh, const R& reference, bool relaxes)
   typedef typename boost::graph_traits<R>::face_descriptor Reference_face;
   typedef std::pair<Reference_face, std::array<double, 3>> Location;
   auto location = mesh.add_property_map<Mesh::Vertex_index, Location>("v:location").first;
-  CGAL::reference_constrained_optimize(
-    mesh, reference, RCO::Minimum_angle_energy(),
-    params::vertex_location_map(location).relax_constraints(relaxes));
+  improve_angles(mesh, reference, params::vertex_location_map(location).relax_constraints(relaxes));
   Vector_3 low = Vector_3::Constant(1e300), high = -low;
   for(const Vector_3& p : make_shape(reference).points)
   {
@@ -126,17 +119,16 @@ void check_locations(Mesh mesh, const R& reference, bool relaxes)
 void test_locations()
 {
   const Shape regular = torus(30, 14), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
-  check_locations(make_mesh<Mesh>(rough), make_mesh<Mesh>(regular), false);
-  check_locations(make_mesh<Mesh>(rough), make_mesh<CGAL::Polyhedron_3<Kernel>>(regular), false);
+  check_locations(mesh_of(rough), mesh_of(regular), false);
+  check_locations(mesh_of(rough), make_mesh<CGAL::Polyhedron_3<Kernel>>(regular), false);
   // on what is the reference already, far from the origin, with a border
   const Shape tube = cylinder(20, 14, 1, 3);
   Shape moved = tube;
   for(Vector_3& p : moved.points)
     p += Vector_3(1e3, -2e3, 5e2);
-  check_locations(make_mesh<Mesh>(moved), make_mesh<Mesh>(moved), true);
+  check_locations(mesh_of(moved), mesh_of(moved), true);
   const Shape plane = plane_grid(9, 7);
-  check_locations(make_mesh<Mesh>(scrambled(plane, 0.4, 9, onto_plane)), make_mesh<Mesh>(plane),
-                  true);
+  check_locations(mesh_of(scrambled(plane, 0.4, 9, onto_plane)), mesh_of(plane), true);
 }
 
 // optimizes the faces that `is_in` names, and checks what holds for any of them
@@ -175,11 +167,10 @@ void test_ranges()
   typedef CGAL::Sequential_tag Tag;
   const auto none = params::default_values();
   const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
-  const Mesh reference = make_mesh<Mesh>(regular), start = make_mesh<Mesh>(rough);
+  const Mesh reference = mesh_of(regular), start = mesh_of(rough);
   const std::size_t n = rough.faces.size();
   Mesh whole = start, mesh = start;
-  const RCO::Result all =
-    CGAL::reference_constrained_optimize(whole, reference, RCO::Minimum_angle_energy());
+  const RCO::Result all = improve_angles(whole, reference);
   {
     const Scope s("all faces are the whole mesh");
     const RCO::Result r = CGAL::reference_constrained_optimize(
@@ -246,10 +237,8 @@ void test_ranges()
     Shape two = joined(rough, torus(10, 6), Vector_3(50, 0, 0));
     two.faces.push_back(
       {two.add(70, 0, 0), two.add(71, 0, 0), two.add(71, 1, 0), two.add(70, 1, 0)});
-    mesh = make_mesh<Mesh>(two);
-    RCO_CHECK_THROWS(
-      CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy()),
-      RCO::Invalid_input, "has 4 vertices");
+    mesh = mesh_of(two);
+    RCO_CHECK_THROWS(improve_angles(mesh, reference), RCO::Invalid_input, "has 4 vertices");
     const RCO::Result r =
       optimize_part<Tag>(mesh, reference, none, [&](std::size_t f) { return f < n; });
     RCO_CHECK_NEAR(r.final_energy, all.final_energy, 0.01 * all.final_energy);
@@ -259,8 +248,8 @@ void test_ranges()
   {
     const Scope s("lines slide inside the range only");
     const Shape plane = plane_grid(16, 16);
-    const Mesh flat = make_mesh<Mesh>(plane);
-    mesh = make_mesh<Mesh>(scrambled(plane, 0.4, 9, onto_plane));
+    const Mesh flat = mesh_of(plane);
+    mesh = mesh_of(scrambled(plane, 0.4, 9, onto_plane));
     optimize_part<Tag>(mesh, flat, params::relax_constraints(true),
                        [](std::size_t f) { return f < 256; });
   }
@@ -287,10 +276,10 @@ void test_mixed_faces()
     else
       for(const std::size_t t : {2 * f, 2 * f + 1})
         mixed.faces.push_back(triangles.faces[t]);
-  const Mesh source = make_mesh<Mesh>(mixed), reference = make_mesh<Mesh>(triangles);
+  const Mesh source = mesh_of(mixed), reference = mesh_of(triangles);
   for(const bool on_surface : {true, false})
   {
-    Mesh mesh = make_mesh<Mesh>(scrambled(mixed, 0.2, 4, onto_torus(1, 0.4)));
+    Mesh mesh = mesh_of(scrambled(mixed, 0.2, 4, onto_torus(1, 0.4)));
     const RCO::Result r = CGAL::reference_constrained_optimize(
       mesh, reference, RCO::Compatible_remeshing_energy(source),
       params::use_on_surface_steps(on_surface).drift_bound(0.05));
@@ -313,7 +302,7 @@ Mesh moved_mesh(Shape shape, const Place& place)
 {
   for(Vector_3& p : shape.points)
     p = place(p);
-  return make_mesh<Mesh>(shape);
+  return mesh_of(shape);
 }
 
 // Defects of a mesh on a reference, and its angles.
@@ -382,7 +371,7 @@ void test_places()
 {
   const Shape regular = torus(40, 20), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
   const auto angles = [](auto& mesh, const Mesh& reference, double) {
-    return CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy());
+    return improve_angles(mesh, reference);
   };
   {
     const Scope s("a mesh and its reference");
@@ -396,22 +385,20 @@ void test_places()
     const Scope s("coordinates that are all on a grid, in a plane, with a border that slides");
     check_places(scrambled(plane_grid(16, 16), 0.3, 9, onto_plane), plane_grid(16, 16), false,
                  [](Mesh& mesh, const Mesh& reference, double) {
-                   return CGAL::reference_constrained_optimize(
-                     mesh, reference, RCO::Minimum_angle_energy(), params::relax_constraints(true));
+                   return improve_angles(mesh, reference, params::relax_constraints(true));
                  });
   }
   {
     const Scope s("a bound that is given is told as it was given");
     check_places(rough, rough, true, [](Mesh& mesh, const Mesh& reference, double factor) {
-      const RCO::Result r = CGAL::reference_constrained_optimize(
-        mesh, reference, RCO::Minimum_angle_energy(), params::drift_bound(0.03 * factor));
+      const RCO::Result r = improve_angles(mesh, reference, params::drift_bound(0.03 * factor));
       RCO_CHECK_EQUAL(r.drift_bound, 0.03 * factor);
       return r;
     });
   }
   {
     const Scope s("rest shapes that are scaled to the reference");
-    const Mesh source = make_mesh<Mesh>(regular);
+    const Mesh source = mesh_of(regular);
     check_places(rough, regular, false, [&](Mesh& mesh, const Mesh& reference, double) {
       return CGAL::reference_constrained_optimize(mesh, reference,
                                                   RCO::Compatible_remeshing_energy(source));
@@ -421,8 +408,8 @@ void test_places()
     const Scope s("distances that are told");
     Shape off = rough;
     off.points[7] += Vector_3(0, 0, 0.1);
-    Mesh mesh = make_mesh<Mesh>(off), large = moved_mesh(off, {1e6, {0, 0, 0}});
-    const double near = angles(mesh, make_mesh<Mesh>(regular), 1).largest_initial_distance,
+    Mesh mesh = mesh_of(off), large = moved_mesh(off, {1e6, {0, 0, 0}});
+    const double near = angles(mesh, mesh_of(regular), 1).largest_initial_distance,
                  far =
                    angles(large, moved_mesh(regular, {1e6, {0, 0, 0}}), 1).largest_initial_distance;
     RCO_CHECK(near > 0.01 && near <= 0.1 + 1e-3);
@@ -450,11 +437,11 @@ void test_nearly_folded()
     for(const double amount : {0.1, 0.3})
       for(const bool on_surface : {true, false})
       {
-        Mesh mesh = make_mesh<Mesh>(folded(scrambled(plane, amount, 9, onto_plane)));
-        const Mesh reference = make_mesh<Mesh>(folded(plane));
+        Mesh mesh = mesh_of(folded(scrambled(plane, amount, 9, onto_plane)));
+        const Mesh reference = mesh_of(folded(plane));
         const RCO::Orientation_defects before = RCO::orientation_defects(mesh, reference);
-        const RCO::Result r = CGAL::reference_constrained_optimize(
-          mesh, reference, RCO::Minimum_angle_energy(), params::use_on_surface_steps(on_surface));
+        const RCO::Result r =
+          improve_angles(mesh, reference, params::use_on_surface_steps(on_surface));
         const RCO::Orientation_defects after = RCO::orientation_defects(mesh, reference);
         RCO_CHECK_LESS_EQUAL(after.number_of_flips + after.number_of_fold_edges,
                              before.number_of_flips + before.number_of_fold_edges);

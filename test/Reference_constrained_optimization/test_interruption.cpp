@@ -104,8 +104,7 @@ RCO::Result optimize(Mesh& mesh, const Mesh& reference, const Scene& scene, Visi
                     .visitor(std::ref(visitor));
   if(scene.has_quads)
     return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Quad_angle_energy(), np);
-  return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(),
-                                                   np);
+  return improve_angles<Tag>(mesh, reference, np);
 }
 
 // the energy of a mesh as it is
@@ -115,15 +114,14 @@ double energy(const Mesh& m, const Mesh& reference, const Scene& scene)
   const auto np = params::number_of_iterations(0);
   return (scene.has_quads
             ? CGAL::reference_constrained_optimize(mesh, reference, RCO::Quad_angle_energy(), np)
-            : CGAL::reference_constrained_optimize(mesh, reference, RCO::Minimum_angle_energy(),
-                                                   np))
+            : improve_angles(mesh, reference, np))
     .initial_energy;
 }
 
 // invariants at any moment
 void check_state(const Mesh& mesh, const Mesh& reference, const Scene& scene)
 {
-  const Mesh start = make_mesh<Mesh>(scene.start);
+  const Mesh start = mesh_of(scene.start);
   const Shape now = make_shape(mesh);
   RCO_CHECK(now.faces == scene.start.faces);
   const Indexed_mesh indices = indexed(scene.start);
@@ -146,10 +144,10 @@ template <typename Tag>
 void test_stops(const Scene& scene)
 {
   const bool is_sequential = std::is_same<Tag, CGAL::Sequential_tag>::value;
-  const Mesh reference = make_mesh<Mesh>(scene.reference);
+  const Mesh reference = mesh_of(scene.reference);
   Visitor all;
   {
-    Mesh mesh = make_mesh<Mesh>(scene.start);
+    Mesh mesh = mesh_of(scene.start);
     const RCO::Result r = optimize<Tag>(mesh, reference, scene, all);
     RCO_CHECK(r.status == RCO::Status::converged);
     RCO_CHECK_LESS(0, all.questions_of_setup);
@@ -162,7 +160,7 @@ void test_stops(const Scene& scene)
                       s + (n - s) / 2, s + 3 * (n - s) / 4, n - 10, n - 1})
   {
     const Scope scope("stopped at question " + std::to_string(k) + " of " + std::to_string(n));
-    Mesh mesh = make_mesh<Mesh>(scene.start);
+    Mesh mesh = mesh_of(scene.start);
     Visitor visitor;
     visitor.stops_at = k;
     const RCO::Result r = optimize<Tag>(mesh, reference, scene, visitor);
@@ -187,7 +185,7 @@ void test_stops(const Scene& scene)
         RCO_CHECK_LESS_EQUAL(r.final_energy, previous * (1 + 5e-3)); // finishing costs a little
       previous = r.final_energy;
       // as reproducible as all else
-      Mesh again = make_mesh<Mesh>(scene.start);
+      Mesh again = mesh_of(scene.start);
       Visitor other;
       other.stops_at = k;
       optimize<Tag>(again, reference, scene, other);
@@ -197,7 +195,7 @@ void test_stops(const Scene& scene)
 
   const auto throws = [&](Event e, long k) {
     const Scope scope("thrown in event " + std::to_string(int(e)) + ", " + std::to_string(k));
-    Mesh mesh = make_mesh<Mesh>(scene.start);
+    Mesh mesh = mesh_of(scene.start);
     Visitor visitor;
     visitor.throws_in = e;
     visitor.throws_at = k;
@@ -232,9 +230,9 @@ void test_states()
   scene.start = scrambled(scene.reference, 0.35, 5, onto_torus(1, 0.4));
   // on the reference, to begin with
   const auto project = [&]() {
-    Mesh mesh = make_mesh<Mesh>(scene.start);
-    CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(scene.reference),
-                                         RCO::Quad_angle_energy(), params::number_of_iterations(0));
+    Mesh mesh = mesh_of(scene.start);
+    CGAL::reference_constrained_optimize(mesh, mesh_of(scene.reference), RCO::Quad_angle_energy(),
+                                         params::number_of_iterations(0));
     scene.start = make_shape(mesh);
   };
   {
@@ -269,18 +267,17 @@ void test_latency()
   const int columns = 400, rows = 125;
   const double limit = 0.25; // a quiet machine takes a tenth of a second at most
 #endif
-  const Mesh reference = make_mesh<Mesh>(torus(3 * columns / 4, 3 * rows / 4));
+  const Mesh reference = mesh_of(torus(3 * columns / 4, 3 * rows / 4));
   const Shape rough = scrambled(torus(columns, rows), 0.1, 3, onto_torus(1, 0.4));
   const int attempts = 3; // others may be busy
   double gap = 0, overtime = 0, rest = 0;
   for(int attempt = 0; attempt < attempts; ++attempt)
   {
-    Mesh mesh = make_mesh<Mesh>(rough);
+    Mesh mesh = mesh_of(rough);
     Visitor visitor;
     visitor.seconds = 4; // by then it has seen every stage
-    CGAL::reference_constrained_optimize<Tag>(
-      mesh, reference, RCO::Minimum_angle_energy(),
-      params::number_of_iterations(2).visitor(std::ref(visitor)));
+    improve_angles<Tag>(mesh, reference,
+                        params::number_of_iterations(2).visitor(std::ref(visitor)));
     RCO_CHECK(visitor.has_finishing || visitor.has_stopped);
     rest = std::chrono::duration<double>(Visitor::Clock::now() - visitor.last).count();
     gap = visitor.largest_gap;
@@ -295,10 +292,10 @@ void test_latency()
   {
     for(int attempt = 0; attempt < attempts; ++attempt)
     {
-      Mesh mesh = make_mesh<Mesh>(rough);
+      Mesh mesh = mesh_of(rough);
       const Visitor::Clock::time_point start = Visitor::Clock::now();
-      const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(
-        mesh, reference, RCO::Minimum_angle_energy(), params::maximum_running_time(time));
+      const RCO::Result r =
+        improve_angles<Tag>(mesh, reference, params::maximum_running_time(time));
       overtime = std::chrono::duration<double>(Visitor::Clock::now() - start).count() - time;
       if(limit < 1)
         RCO_CHECK(r.status == RCO::Status::time_limit);

@@ -156,8 +156,7 @@ void test_inversion()
   RCO_CHECK_LESS(backtracking.steps()[moved], none.steps()[moved]);
   for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
     scene.state.vertices[scene.patch.vertices[v]] = none.candidate()[v];
-  RCO_CHECK_LESS(std::size_t(0),
-                 internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300).flips);
+  RCO_CHECK_LESS(0u, internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300).flips);
 }
 
 int main()

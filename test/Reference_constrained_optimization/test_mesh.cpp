@@ -215,8 +215,7 @@ void test_indexed_meshes()
   }
   const Shape two = joined(icosphere(1), plane_grid(3, 3), Vector_3(5, 0, 0));
   std::vector<char> is_unvisited(two.faces.size(), 1);
-  RCO_CHECK_EQUAL(internal::extract_connected_region(indexed(two), 0, is_unvisited).size(),
-                  std::size_t(80));
+  RCO_CHECK_EQUAL(internal::extract_connected_region(indexed(two), 0, is_unvisited).size(), 80u);
   RCO_CHECK_EQUAL(std::count(is_unvisited.begin(), is_unvisited.end(), 1), 18);
 
   const Shape box = cube(3);

@@ -69,7 +69,7 @@ void test_on_surface_steps(const std::string& name, const Shape& shape, const Ve
   double displacement = 0;
   const Shape start =
     wandered(shape, internal::Reference_surface(copy_of(shape)), 4, 0.2, 3, displacement);
-  const Energy energy(make_mesh<Mesh>(shape));
+  const Energy energy(mesh_of(shape));
   const Located_shape scene(start, shape, energy);
   const internal::Reference_surface& surface = scene.surface;
   const internal::Patch patch =
@@ -224,7 +224,7 @@ void test_pattern_search()
     std::size_t moved = 0;
     for(int v = 0; v < int(patch.vertices.size()); ++v)
       moved += mover.displacement_length(v) > 0;
-    RCO_CHECK_LESS(std::size_t(10), moved);
+    RCO_CHECK_LESS(10u, moved);
     RCO_CHECK_LESS(moved, patch.vertices.size());
     RCO_CHECK(scene.move(patch, mover));
     const internal::Global_measure after = measure();

@@ -243,7 +243,7 @@ Measures check_outcome(const Outcome& out, double k = 1)
   if(r.status == RCO::Status::converged || r.status == RCO::Status::iteration_limit)
     RCO_CHECK_EQUAL(r.number_of_patches, seen.announced);
   RCO_CHECK_EQUAL(r.sum_of_patch_sizes, double(seen.faces));
-  RCO_CHECK_EQUAL(seen.open_rounds, std::size_t(0));
+  RCO_CHECK_EQUAL(seen.open_rounds, 0u);
   RCO_CHECK_LESS_EQUAL(r.number_of_flattened_patches, r.number_of_accepted_patches);
   seen.check_sums(r,
                   double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1));
@@ -259,8 +259,8 @@ Measures check_outcome(const Outcome& out, double k = 1)
 // the run and all checks, for a mesh and a reference of the usual type
 Outcome optimized(const Shape& shape, const Shape& reference, const Options& options = Options())
 {
-  Mesh mesh = make_mesh<Mesh>(shape);
-  const Mesh r = make_mesh<Mesh>(reference);
+  Mesh mesh = mesh_of(shape);
+  const Mesh r = mesh_of(reference);
   Outcome out = run<CGAL::Sequential_tag>(mesh, r, RCO::Minimum_angle_energy(), options);
   check_outcome(out);
   return out;
@@ -276,7 +276,7 @@ void test_recovery(const Shape& regular,
   const Shape rough = scrambled(regular, 0.3, 1, project);
   const Outcome out = optimized(rough, regular);
   const Measures m = measure(out.after, out, 1);
-  RCO_CHECK_EQUAL(out.result.number_of_flips + out.result.number_of_fold_edges, std::size_t(0));
+  RCO_CHECK_EQUAL(out.result.number_of_flips + out.result.number_of_fold_edges, 0u);
   RCO_CHECK_LESS(smallest_angle(rough), 0.6 * smallest_angle(regular));
   RCO_CHECK_LESS_EQUAL(least_part * smallest_angle(regular), m.smallest_angle);
   RCO_CHECK_LESS_EQUAL(0.97 * mean_smallest_angle(regular), m.mean_angle);
@@ -330,12 +330,12 @@ void test_quads()
   for(Shape* s : {&grid, &rough})
     for(Vector_3& p : s->points)
       p.z() = 0.1 * p.x() * p.x();
-  Mesh mesh = make_mesh<Mesh>(rough);
-  const Mesh reference = make_mesh<Mesh>(grid);
+  Mesh mesh = mesh_of(rough);
+  const Mesh reference = mesh_of(grid);
   const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, Corner_energy());
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   RCO_CHECK_NEAR(r.final_energy, std::exp(2.), 0.05 * std::exp(2.));
-  RCO_CHECK_EQUAL(r.number_of_flips, std::size_t(0));
+  RCO_CHECK_EQUAL(r.number_of_flips, 0u);
   const Shape after = make_shape(mesh);
   const Indexed_mesh indices = indexed(rough);
   for(std::size_t v = 0; v < after.points.size(); ++v)
@@ -378,7 +378,7 @@ void test_small_meshes()
     const Shape reference = shape;
     shape.points[4] += Vector_3(0.15, 0.1, 0);
     const Outcome out = optimized(shape, reference);
-    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, std::size_t(1));
+    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, 1u);
     RCO_CHECK_LESS((out.after.points[4] - reference.points[4]).norm(), 0.05);
   }
   {
@@ -386,7 +386,7 @@ void test_small_meshes()
     Shape shape = scrambled(plane_grid(6, 6), 0.3, 3, onto_plane);
     shape.add(100, 200, 300);
     const Outcome out = optimized(shape, plane_grid(6, 6));
-    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, std::size_t(25));
+    RCO_CHECK_EQUAL(out.result.number_of_free_vertices, 25u);
     RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
     // and in the reference
     Shape reference = plane_grid(6, 6);
@@ -409,7 +409,7 @@ void test_small_meshes()
         for(int& v : f)
           v = (v + n - 7) % n;
       const Outcome out = optimized(shape, is_copy ? rotated : shape);
-      RCO_CHECK_EQUAL(out.result.initial_number_of_flips, std::size_t(0));
+      RCO_CHECK_EQUAL(out.result.initial_number_of_flips, 0u);
       for(int v = 0; v < n; ++v)
         RCO_CHECK_EQUAL(out.locations[v].first < faces / 2, v < n / 2);
     }
@@ -497,7 +497,7 @@ void test_degenerate_faces()
     degenerate += (shape.points[t[1]] - shape.points[t[0]])
                     .cross(shape.points[t[2]] - shape.points[t[0]])
                     .norm() == 0;
-  RCO_CHECK_EQUAL(degenerate, std::size_t(8));
+  RCO_CHECK_EQUAL(degenerate, 8u);
   const Outcome out = optimized(shape, regular);
   const Measures m = measure(out.after, out, 1);
   RCO_CHECK_LESS(mean_smallest_angle(shape) + 5, m.mean_angle);
@@ -517,17 +517,16 @@ void test_degenerate_faces()
   for(const auto& t : held.after.faces)
     bad += smallest_angle(held.after.points[t[0]], held.after.points[t[1]],
                           held.after.points[t[2]]) < 15;
-  RCO_CHECK_LESS_EQUAL(bad, std::size_t(40));
+  RCO_CHECK_LESS_EQUAL(bad, 40u);
 
   // a mesh without any area is refused, not touched
   Shape line = plane_grid(5, 5);
   for(Vector_3& p : line.points)
     p = Vector_3(p.x(), 0.1 + 0.7 * p.x(), 1e-3);
-  Mesh held_back = make_mesh<Mesh>(line);
-  const Mesh plane = make_mesh<Mesh>(plane_grid(4, 4, 2));
-  RCO_CHECK_THROWS(
-    CGAL::reference_constrained_optimize(held_back, plane, RCO::Minimum_angle_energy()),
-    RCO::Invalid_input, "mesh: every face has zero area");
+  Mesh held_back = mesh_of(line);
+  const Mesh plane = mesh_of(plane_grid(4, 4, 2));
+  RCO_CHECK_THROWS(improve_angles(held_back, plane), RCO::Invalid_input,
+                   "mesh: every face has zero area");
   RCO_CHECK(same_bits(make_shape(held_back), line));
 
   // a reference with faces of no area
@@ -537,7 +536,7 @@ void test_degenerate_faces()
   // a folded start: no more flips and folds than before, and energy where they stay
   Shape folded = scrambled(plane_grid(14, 14), 0.8, 10, onto_plane);
   const Outcome unfolded = optimized(folded, plane_grid(14, 14));
-  RCO_CHECK_LESS(std::size_t(5), unfolded.result.initial_number_of_flips);
+  RCO_CHECK_LESS(5u, unfolded.result.initial_number_of_flips);
   RCO_CHECK_LESS(unfolded.result.number_of_flips + unfolded.result.number_of_fold_edges,
                  unfolded.result.initial_number_of_flips +
                    unfolded.result.initial_number_of_fold_edges);
@@ -609,8 +608,8 @@ void test_determinism()
   {
     const Scope s(std::to_string(threads) + " threads");
     tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    Mesh mesh = make_mesh<Mesh>(rough);
-    const Mesh reference = make_mesh<Mesh>(regular);
+    Mesh mesh = mesh_of(rough);
+    const Mesh reference = mesh_of(regular);
     const Outcome out =
       run<CGAL::Parallel_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
     check_outcome(out);
@@ -621,7 +620,7 @@ void test_determinism()
 #endif
 
   // the same object for both, or a copy of it
-  Mesh alone = make_mesh<Mesh>(rough), other = make_mesh<Mesh>(rough);
+  Mesh alone = mesh_of(rough), other = mesh_of(rough);
   const Mesh copy = other;
   options.seed = 0;
   const Outcome same =
@@ -653,13 +652,12 @@ private:
 // is to give up soon.
 void test_nothing_to_gain()
 {
-  Mesh mesh = make_mesh<Mesh>(closed_cylinder(48, 1, 1, 30));
+  Mesh mesh = mesh_of(closed_cylinder(48, 1, 1, 30));
   const double smallest = smallest_angle(make_shape(mesh));
   long questions = 0;
   Question_counter visitor(questions);
-  const RCO::Result result = CGAL::reference_constrained_optimize(
-    mesh, mesh, RCO::Minimum_angle_energy(), params::visitor(visitor));
-  RCO_CHECK_LESS(result.number_of_patches, std::size_t(30));
+  const RCO::Result result = improve_angles(mesh, mesh, params::visitor(visitor));
+  RCO_CHECK_LESS(result.number_of_patches, 30u);
   RCO_CHECK_LESS(questions, 1500);
   RCO_CHECK_LESS_EQUAL(result.final_energy, result.initial_energy);
   RCO_CHECK_LESS_EQUAL(smallest, smallest_angle(make_shape(mesh)));
@@ -683,12 +681,12 @@ void test_endings()
     options.iterations = 0;
     const Outcome out = optimized(rough, regular, options);
     RCO_CHECK(same_bits(out.before, out.after));
-    RCO_CHECK_EQUAL(out.result.number_of_iterations, std::size_t(0));
+    RCO_CHECK_EQUAL(out.result.number_of_iterations, 0u);
     RCO_CHECK(out.result.status == RCO::Status::iteration_limit);
     RCO_CHECK_EQUAL(out.result.final_energy, out.result.initial_energy);
     options.iterations = 1;
     const Outcome one = optimized(rough, regular, options);
-    RCO_CHECK_EQUAL(one.result.number_of_iterations, std::size_t(1));
+    RCO_CHECK_EQUAL(one.result.number_of_iterations, 1u);
     RCO_CHECK(one.result.status == RCO::Status::iteration_limit);
     RCO_CHECK_LESS(one.result.final_energy, one.result.initial_energy);
     options.iterations = 30;
@@ -718,8 +716,8 @@ void test_endings()
     const Scope s("thrown at patch " + std::to_string(patches));
     options.recorder.patches_until_throw = patches;
     options.expect_throw = true;
-    Mesh mesh = make_mesh<Mesh>(rough);
-    const Mesh reference = make_mesh<Mesh>(regular);
+    Mesh mesh = mesh_of(rough);
+    const Mesh reference = mesh_of(regular);
     const Outcome out =
       run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
     const Measures m = check_outcome(out);
@@ -737,10 +735,9 @@ void test_endings()
 
   {
     const Scope s("time limit");
-    Mesh mesh = make_mesh<Mesh>(rough);
-    const RCO::Result result = CGAL::reference_constrained_optimize(
-      mesh, make_mesh<Mesh>(regular), RCO::Minimum_angle_energy(),
-      params::maximum_running_time(1e-9));
+    Mesh mesh = mesh_of(rough);
+    const RCO::Result result =
+      improve_angles(mesh, mesh_of(regular), params::maximum_running_time(1e-9));
     RCO_CHECK(result.status == RCO::Status::time_limit);
     RCO_CHECK(same_bits(make_shape(mesh), rough));
   }
@@ -759,8 +756,8 @@ void test_exponents()
   const Shape rough = scrambled(torus(30, 12), 0.3, 15, onto_torus(1, 0.4));
   for(const double k : {0.5, 2.})
   {
-    Mesh mesh = make_mesh<Mesh>(rough);
-    const Mesh reference = make_mesh<Mesh>(torus(30, 12));
+    Mesh mesh = mesh_of(rough);
+    const Mesh reference = mesh_of(torus(30, 12));
     Options options;
     options.iterations = 5;
     const Outcome out =
@@ -785,7 +782,7 @@ bool test_data(const std::string& name, unsigned int iterations)
   }
   Options options;
   options.iterations = iterations;
-  Mesh mesh = make_mesh<Mesh>(shape);
+  Mesh mesh = mesh_of(shape);
   const Mesh reference = mesh;
   const Outcome out =
     run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
@@ -833,7 +830,7 @@ void test_drift(const std::string& name)
 {
   const Scope scope("drift of " + name);
 #ifdef RCO_DATA_DIR
-  const Mesh input = make_mesh<Mesh>(read_off(std::string(RCO_DATA_DIR) + "/" + name));
+  const Mesh input = mesh_of(read_off(std::string(RCO_DATA_DIR) + "/" + name));
 #else
   const Mesh input;
 #endif
@@ -850,11 +847,10 @@ void test_drift(const std::string& name)
     Mesh mesh = input;
     const RCO::Result result =
       bound < 0
-        ? CGAL::reference_constrained_optimize(
-            mesh, input, RCO::Minimum_angle_energy(),
-            CGAL::parameters::detect_features(false).number_of_iterations(5))
-        : CGAL::reference_constrained_optimize(
-            mesh, input, RCO::Minimum_angle_energy(),
+        ? improve_angles(mesh, input,
+                         CGAL::parameters::detect_features(false).number_of_iterations(5))
+        : improve_angles(
+            mesh, input,
             CGAL::parameters::drift_bound(bound).detect_features(false).number_of_iterations(5));
     const double drift = watched_drift(mesh, input);
     RCO_CHECK_LESS(result.final_energy, result.initial_energy);
@@ -875,8 +871,8 @@ void test_drift(const std::string& name)
     last = drift;
 
     // from there on with a smaller bound, nothing gets worse
-    const RCO::Result again = CGAL::reference_constrained_optimize(
-      mesh, input, RCO::Minimum_angle_energy(),
+    const RCO::Result again = improve_angles(
+      mesh, input,
       CGAL::parameters::drift_bound(0.05 * edge).detect_features(false).number_of_iterations(2));
     RCO_CHECK_LESS_EQUAL(again.drift, again.initial_drift * (1 + 1e-12));
     RCO_CHECK_LESS_EQUAL(watched_drift(mesh, input), again.initial_drift * (1 + 1e-12));

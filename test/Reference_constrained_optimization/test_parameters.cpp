@@ -84,7 +84,7 @@ void test_chains()
   const internal::Loop_parameters standard =
     internal::read_loop_parameters(internal::cgal_parameters(params::default_values()));
   const internal::Loop_parameters untouched;
-  RCO_CHECK_EQUAL(standard.number_of_iterations, std::size_t(100));
+  RCO_CHECK_EQUAL(standard.number_of_iterations, 100u);
   RCO_CHECK_EQUAL(standard.random_seed, 0u);
   RCO_CHECK_EQUAL(standard.selection.developability_threshold, 0.25);
   RCO_CHECK_EQUAL(standard.selection.maximum_patch_size, untouched.selection.maximum_patch_size);
@@ -97,7 +97,7 @@ void test_chains()
                                                                .maximum_running_time(12.5)
                                                                .number_of_iterations(4)
                                                                .random_seed(8)));
-  RCO_CHECK_EQUAL(read.number_of_iterations, std::size_t(4));
+  RCO_CHECK_EQUAL(read.number_of_iterations, 4u);
   RCO_CHECK_EQUAL(read.random_seed, 8u);
   RCO_CHECK_EQUAL(read.selection.developability_threshold, 0.3);
   RCO_CHECK_EQUAL(read.selection.maximum_patch_size, 50);
@@ -121,7 +121,7 @@ struct Patch_sizes : RCO::Default_visitor
 void test_calls()
 {
   const Shape regular = icosphere(2), rough = scrambled(regular, 0.3, 1, onto_sphere);
-  const Mesh reference = make_mesh<Mesh>(regular), start = make_mesh<Mesh>(rough);
+  const Mesh reference = mesh_of(regular), start = mesh_of(rough);
   const RCO::Minimum_angle_energy energy;
 
   Mesh mesh = start;
@@ -153,7 +153,7 @@ void test_calls()
 
   // points kept elsewhere: those of the mesh itself neither matter nor change
   mesh = start;
-  Mesh shifted = make_mesh<Mesh>(rough), shifted_reference = make_mesh<Mesh>(regular);
+  Mesh shifted = mesh_of(rough), shifted_reference = mesh_of(regular);
   auto points = shifted.add_property_map<Vertex, Point>("v:elsewhere").first;
   auto reference_points = shifted_reference.add_property_map<Vertex, Point>("v:elsewhere").first;
   for(const Vertex v : shifted.vertices())
@@ -181,9 +181,9 @@ void test_calls()
   const RCO::Result small = CGAL::reference_constrained_optimize(
     mesh, reference, energy,
     params::maximum_patch_size(25).number_of_iterations(2).visitor(std::ref(sizes)));
-  RCO_CHECK_LESS_EQUAL(sizes.largest, std::size_t(25));
+  RCO_CHECK_LESS_EQUAL(sizes.largest, 25u);
   RCO_CHECK_EQUAL(sizes.patches, small.number_of_patches);
-  RCO_CHECK_LESS_EQUAL(small.number_of_iterations, std::size_t(2));
+  RCO_CHECK_LESS_EQUAL(small.number_of_iterations, 2u);
   RCO_CHECK_LESS(10., double(small.number_of_patches));
   mesh = start;
   const RCO::Result loose =
@@ -399,8 +399,8 @@ void test_bad_data()
   test_bad_meshes<CGAL::Polyhedron_3<Kernel>>();
 
   const RCO::Minimum_angle_energy energy;
-  const Mesh reference = make_mesh<Mesh>(icosphere(1));
-  Mesh mesh = make_mesh<Mesh>(icosphere(1));
+  const Mesh reference = mesh_of(icosphere(1));
+  Mesh mesh = mesh_of(icosphere(1));
   const auto np = params::default_values();
   {
     const Scope scope("not manifold");
@@ -409,7 +409,7 @@ void test_bad_data()
       Mesh fans = two_fans(closed);
       RCO_CHECK_EQUAL(fans.number_of_faces(), Mesh::size_type(closed ? 8 : 6));
       refuses(fans, fans, energy, np, "mesh: vertex 0 is not manifold");
-      Mesh good = make_mesh<Mesh>(cone(8, 2, 0.5));
+      Mesh good = mesh_of(cone(8, 2, 0.5));
       refuses(good, fans, energy, np, "reference: vertex 0 is not manifold");
     }
   }
@@ -463,7 +463,7 @@ void test_bad_data()
     for(const int i : {6, 7})
       four.set_halfedge(v[i], Mesh::null_halfedge());
     refuses(four, four, energy, np, "mesh: the edge between vertices 0 and 1");
-    Mesh good = make_mesh<Mesh>(plane_grid(2, 2));
+    Mesh good = mesh_of(plane_grid(2, 2));
     refuses(good, four, energy, np, "reference: the edge between vertices 0 and 1");
   }
   // an error is an std::invalid_argument, too
@@ -476,24 +476,22 @@ void test_odd_data()
 {
   const RCO::Minimum_angle_energy energy;
   const Shape sphere = icosphere(2), rough = scrambled(sphere, 0.3, 1, onto_sphere);
-  const Mesh start = make_mesh<Mesh>(rough);
+  const Mesh start = mesh_of(rough);
   Mesh plain = start;
-  const RCO::Result expected =
-    CGAL::reference_constrained_optimize(plain, make_mesh<Mesh>(sphere), energy);
+  const RCO::Result expected = CGAL::reference_constrained_optimize(plain, mesh_of(sphere), energy);
   {
     const Scope scope("a reference oriented the other way");
     Mesh mesh = start;
     const RCO::Result r =
-      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(turned_round(sphere)), energy);
+      CGAL::reference_constrained_optimize(mesh, mesh_of(turned_round(sphere)), energy);
     RCO_CHECK_EQUAL(r.initial_number_of_flips, expected.initial_number_of_flips);
-    RCO_CHECK_EQUAL(r.number_of_flips, std::size_t(0));
-    RCO_CHECK_EQUAL(r.number_of_fold_edges, std::size_t(0));
+    RCO_CHECK_EQUAL(r.number_of_flips, 0u);
+    RCO_CHECK_EQUAL(r.number_of_fold_edges, 0u);
     RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);
     // the mesh inside out
-    mesh = make_mesh<Mesh>(turned_round(rough));
-    const RCO::Result out =
-      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(sphere), energy);
-    RCO_CHECK_EQUAL(out.number_of_flips + out.number_of_fold_edges, std::size_t(0));
+    mesh = mesh_of(turned_round(rough));
+    const RCO::Result out = CGAL::reference_constrained_optimize(mesh, mesh_of(sphere), energy);
+    RCO_CHECK_EQUAL(out.number_of_flips + out.number_of_fold_edges, 0u);
     RCO_CHECK_NEAR(out.final_energy, expected.final_energy, 0.02 * expected.final_energy);
   }
   for(const bool first : {false, true})
@@ -501,12 +499,12 @@ void test_odd_data()
     const Scope scope("one component of two oriented the other way");
     const Shape turned = turned_round(sphere);
     const Vector_3 shift(3, 0, 0);
-    Mesh mesh = make_mesh<Mesh>(joined(rough, rough, shift));
+    Mesh mesh = mesh_of(joined(rough, rough, shift));
     const Mesh reference =
-      make_mesh<Mesh>(first ? joined(turned, sphere, shift) : joined(sphere, turned, shift));
+      mesh_of(first ? joined(turned, sphere, shift) : joined(sphere, turned, shift));
     const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, energy);
     RCO_CHECK_EQUAL(r.initial_number_of_flips, 2 * expected.initial_number_of_flips);
-    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, std::size_t(0));
+    RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, 0u);
     RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);
   }
   {
@@ -515,9 +513,8 @@ void test_odd_data()
     with.add(1e6, 0, 0);
     Shape reference = sphere;
     reference.add(0, -1e6, 3);
-    Mesh mesh = make_mesh<Mesh>(with);
-    const RCO::Result r =
-      CGAL::reference_constrained_optimize(mesh, make_mesh<Mesh>(reference), energy);
+    Mesh mesh = mesh_of(with);
+    const RCO::Result r = CGAL::reference_constrained_optimize(mesh, mesh_of(reference), energy);
     RCO_CHECK_EQUAL(mesh.number_of_vertices(), Mesh::size_type(with.points.size()));
     RCO_CHECK(mesh.point(Vertex(int(rough.points.size()))) == Point(1e6, 0, 0));
     RCO_CHECK_NEAR(r.final_energy, expected.final_energy, 0.02 * expected.final_energy);

@@ -6,12 +6,8 @@
 // result must satisfy, and quads that are not convex.
 
 #include "Recorder.h"
-#include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
-
-#include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/reference_constrained_optimize.h>
+#include "optimization.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polyhedron_3.h>
@@ -126,20 +122,9 @@ struct Outcome
 {
   RCO::Result result;
   Shape before, after;
-  double deviation = 0; // of free vertices from the reference
   RCO::Edge_statistics edges;
   RCO::Corner_angle_statistics corners;
 };
-
-std::size_t defects_before(const RCO::Result& r)
-{
-  return r.initial_number_of_flips + r.initial_number_of_fold_edges +
-         r.initial_number_of_nonconvex_quads;
-}
-std::size_t defects_after(const RCO::Result& r)
-{
-  return r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads;
-}
 
 // the call, and all that must hold of any
 template <typename Tag, typename M, typename Energy>
@@ -149,19 +134,10 @@ Outcome run(M& mesh, const M& reference, const Energy& energy, const Options& op
   const M reference_copy = reference;
   Outcome out;
   out.before = make_shape(mesh);
-  const Shape reference_before = make_shape(reference);
-  const Indexed_mesh indices = indexed(out.before);
   auto constrained = get(CGAL::dynamic_vertex_property_t<bool>(), mesh);
-  auto is_free = get(CGAL::dynamic_vertex_property_t<bool>(), mesh);
-  std::vector<char> free_vertices;
+  std::size_t i = 0;
   for(const auto v : vertices(mesh))
-  {
-    const std::size_t i = free_vertices.size();
-    put(constrained, v, !options.is_constrained.empty() && options.is_constrained[i]);
-    put(is_free, v, !get(constrained, v) && !indices.is_border_vertex[i]);
-    free_vertices.push_back(get(is_free, v));
-  }
-  const auto is_measured = [&](const auto& v) { return bool(get(is_free, v)); };
+    put(constrained, v, !options.is_constrained.empty() && options.is_constrained[i++]);
 
   Recorder seen;
   out.result =
@@ -177,39 +153,13 @@ Outcome run(M& mesh, const M& reference, const Energy& energy, const Options& op
   out.after = make_shape(mesh);
   const RCO::Result& r = out.result;
 
-  RCO_CHECK(out.before.faces == out.after.faces);
   if(!is_same_object)
-    RCO_CHECK(same_bits(make_shape(reference), reference_before));
-  std::size_t number_free = 0;
-  for(std::size_t v = 0; v < free_vertices.size(); ++v)
-  {
-    RCO_CHECK(out.after.points[v].allFinite());
-    number_free += free_vertices[v];
-    if(!free_vertices[v])
-      RCO_CHECK(same_bits(out.after.points[v], out.before.points[v]));
-  }
-  RCO_CHECK_EQUAL(r.number_of_free_vertices, number_free);
-  const RCO::Distance_to_reference distance = RCO::distance_to_reference(
-    mesh, reference_copy, params::default_values(), params::default_values(), is_measured);
-  RCO_CHECK_EQUAL(distance.number_of_vertices, number_free);
-  RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
-  out.deviation = distance.maximum;
-
-  // defects, as measured by others
-  RCO_CHECK_LESS_EQUAL(defects_after(r), defects_before(r));
-  RCO_CHECK_EQUAL(RCO::number_of_nonconvex_quads(mesh, reference_copy),
-                  r.number_of_nonconvex_quads);
-  const RCO::Orientation_defects turned = RCO::orientation_defects(mesh, reference_copy);
-  RCO_CHECK_EQUAL(turned.number_of_flips, r.number_of_flips);
-  RCO_CHECK_EQUAL(turned.number_of_fold_edges, r.number_of_fold_edges);
+    RCO_CHECK(same_bits(make_shape(reference), make_shape(reference_copy)));
+  check_result(out.before, mesh, reference_copy, r, options.is_constrained);
   RCO_CHECK_LESS_EQUAL(r.number_of_flips, r.initial_number_of_flips);
   RCO_CHECK_LESS_EQUAL(r.number_of_fold_edges, r.initial_number_of_fold_edges);
   RCO_CHECK_LESS_EQUAL(r.number_of_nonconvex_quads, r.initial_number_of_nonconvex_quads);
-
-  // energies, and what the visitor was told adds up to them
-  RCO_CHECK(std::isfinite(r.initial_energy) && std::isfinite(r.final_energy));
-  if(defects_after(r) == defects_before(r))
-    RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
+  // what the visitor was told adds up to the energies
   double elements = 0;
   for(const std::vector<int>& f : out.before.faces)
     elements += f.size() == 4 ? 4 : 1;
@@ -225,8 +175,8 @@ Outcome optimized(const Shape& shape,
                   const Energy& energy,
                   const Options& options = Options())
 {
-  Mesh mesh = make_mesh<Mesh>(shape);
-  return run<CGAL::Sequential_tag>(mesh, make_mesh<Mesh>(reference), energy, options);
+  Mesh mesh = mesh_of(shape);
+  return run<CGAL::Sequential_tag>(mesh, mesh_of(reference), energy, options);
 }
 
 template <typename Energy>
@@ -278,15 +228,10 @@ void check_isometric_elements(const Energy& energy, const Shape& shape, double v
 void test_elements()
 {
   // a unit square, turned ones, and a unit equilateral triangle
-  Shape mixed;
-  mixed.add(0, 0, 0);
-  mixed.add(1, 0, 0);
-  mixed.add(1, 1, 0);
-  mixed.add(0, 1, 0);
-  mixed.add(0.5, 1 + 0.5 * std::sqrt(3.), 0);
-  mixed.add(-1, 0, 0);
-  mixed.add(-1, 1, 0);
-  mixed.faces = {{0, 1, 2, 3}, {3, 2, 4}, {3, 6, 5, 0}};
+  const Shape mixed{{Vector_3(0, 0, 0), Vector_3(1, 0, 0), Vector_3(1, 1, 0), Vector_3(0, 1, 0),
+                     Vector_3(0.5, 1 + 0.5 * std::sqrt(3.), 0), Vector_3(-1, 0, 0),
+                     Vector_3(-1, 1, 0)},
+                    {{0, 1, 2, 3}, {3, 2, 4}, {3, 6, 5, 0}}};
   check_isometric_elements(RCO::Quad_regularity_energy(1), mixed, 4);
   for(const double k : {0.5, 1., 2.})
     check_isometric_elements(RCO::Quad_angle_energy(k), mixed, std::exp(2 * k));
@@ -341,19 +286,17 @@ void test_errors()
   }
   // four squares and a pentagon
   Shape house = plane_grid(2, 2, 2, true);
-  house.add(3, 1, 0);
-  house.add(3, 2, 0);
-  house.add(2.5, 2.5, 0);
-  house.faces.push_back({5, 9, 10, 11, 8});
+  const int right = house.add(3, 1, 0);
+  house.faces.push_back({5, right, house.add(3, 2, 0), house.add(2.5, 2.5, 0), 8});
   const auto refused = [&](const auto& energy) {
-    Mesh mesh = make_mesh<Mesh>(house);
-    const Mesh plane = make_mesh<Mesh>(plane_grid(6, 6, 4));
+    Mesh mesh = mesh_of(house);
+    const Mesh plane = mesh_of(plane_grid(6, 6, 4));
     const std::string name = "face " + std::to_string(house.faces.size() - 1) + " has 5 vertices";
     RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(mesh, plane, energy), RCO::Invalid_input,
                      name);
     RCO_CHECK(same_bits(make_shape(mesh), house));
     // nor as a reference
-    Mesh quads = make_mesh<Mesh>(plane_grid(2, 2, 2, true));
+    Mesh quads = mesh_of(plane_grid(2, 2, 2, true));
     RCO_CHECK_THROWS(CGAL::reference_constrained_optimize(quads, mesh, energy), RCO::Invalid_input,
                      name);
     RCO_CHECK(same_bits(make_shape(quads), plane_grid(2, 2, 2, true)));
@@ -362,12 +305,20 @@ void test_errors()
   refused(RCO::Quad_angle_energy());
 }
 
+void print(const Outcome& out, double optimum)
+{
+  std::cout << "  angles +- " << out.corners.standard_deviation << ", edges +- "
+            << out.edges.standard_deviation << ", energy " << out.result.final_energy << " for "
+            << optimum << ", " << out.result.number_of_iterations << " iterations, "
+            << out.result.running_time << " s" << std::endl;
+}
+
 void test_plane_recovery()
 {
   const int n = 14;
   const Shape regular = plane_grid(n, n, 1, true), fine = ground(37, 33);
   const Shape rough = scrambled(regular, 0.35, 1, onto_plane);
-  RCO_CHECK_EQUAL(number_nonconvex_in_plane(rough), std::size_t(0));
+  RCO_CHECK_EQUAL(number_nonconvex_in_plane(rough), 0u);
   for(const bool on_surface : {true, false})
   {
     const Scope s(on_surface ? "on the surface" : "flattened");
@@ -385,10 +336,7 @@ void test_plane_recovery()
       for(std::size_t v = 0; v < regular.points.size(); ++v)
         largest = (std::max)(largest, (out.after.points[v] - regular.points[v]).norm() * n);
       RCO_CHECK_LESS(largest, part_of_side);
-      std::cout << "  angles +- " << out.corners.standard_deviation << ", edges +- "
-                << out.edges.standard_deviation << ", energy " << out.result.final_energy << " for "
-                << optimum << ", " << out.result.number_of_iterations << " iterations, "
-                << out.result.running_time << " s" << std::endl;
+      print(out, optimum);
     };
     // legs as long as the squares' sides: the optimum of equation (7) is 4
     const double side = 1. / n / mean_edge_length(rough);
@@ -426,10 +374,7 @@ void test_tube_recovery()
         RCO_CHECK_LESS(out.edges.standard_deviation, 0.01);
       }
       RCO_CHECK_NEAR(out.result.final_energy, optimum, (on_surface ? 2e-3 : 5e-2) * optimum);
-      std::cout << "  tube: angles +- " << out.corners.standard_deviation << ", edges +- "
-                << out.edges.standard_deviation << ", energy " << out.result.final_energy << " for "
-                << optimum << ", " << out.result.number_of_iterations << " iterations, "
-                << out.result.running_time << " s" << std::endl;
+      print(out, optimum);
     };
     const double l = side / mean_edge_length(rough);
     regular_again(optimized(rough, fine, RCO::Quad_regularity_energy(l), options), 4);
@@ -447,7 +392,7 @@ void test_curved_recovery()
     const Outcome out = optimized(rough, fine, energy);
     RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
     RCO_CHECK_LESS_EQUAL(out.result.final_energy, 1.03 * from_regular.result.final_energy);
-    RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+    RCO_CHECK_EQUAL(defects_after(out.result), 0u);
     std::cout << "  " << name << ": energy " << out.result.initial_energy << " -> "
               << out.result.final_energy << ", from regular " << from_regular.result.final_energy
               << std::endl;
@@ -506,7 +451,7 @@ Outcome invariants(const Case& c, int which, const Energy& energy, const Options
                                     energy, own);
   }
   if(which != 1) // a coarse reference may turn a face that is put on it
-    RCO_CHECK_EQUAL(defects_before(out.result), std::size_t(0));
+    RCO_CHECK_EQUAL(defects_before(out.result), 0u);
   RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
   if(which == 2)
     RCO_CHECK_LESS(out.result.largest_initial_distance, 1e-15);
@@ -580,14 +525,13 @@ void test_same()
     const Outcome round = invariants<Mesh>(c, 3, energy, options);
     RCO_CHECK_NEAR(round.result.final_energy, first.result.final_energy,
                    0.05 * first.result.final_energy);
-#ifdef CGAL_LINKED_WITH_TBB
-    Mesh mesh = make_mesh<Mesh>(c.shape);
-    const Outcome parallel =
-      run<CGAL::Parallel_tag>(mesh, make_mesh<Mesh>(c.fine), energy, options);
-    RCO_CHECK(same_bits(first.after, parallel.after));
-    RCO_CHECK_EQUAL(first.result.final_energy, parallel.result.final_energy);
-    RCO_CHECK_EQUAL(first.result.number_of_patches, parallel.result.number_of_patches);
-#endif
+    with_threads([&](auto tag) {
+      Mesh mesh = mesh_of(c.shape);
+      const Outcome parallel = run<decltype(tag)>(mesh, mesh_of(c.fine), energy, options);
+      RCO_CHECK(same_bits(first.after, parallel.after));
+      RCO_CHECK_EQUAL(first.result.final_energy, parallel.result.final_energy);
+      RCO_CHECK_EQUAL(first.result.number_of_patches, parallel.result.number_of_patches);
+    });
     options.seed = 1;
     RCO_CHECK(!same_bits(first.after, invariants<Mesh>(c, 0, energy, options).after));
   };
@@ -658,8 +602,8 @@ void test_untangling()
                 << " to " << out.corners.maximum << std::endl;
       if(is_regularity || options.on_surface)
       {
-        RCO_CHECK_EQUAL(out.result.number_of_nonconvex_quads, std::size_t(0));
-        RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+        RCO_CHECK_EQUAL(out.result.number_of_nonconvex_quads, 0u);
+        RCO_CHECK_EQUAL(defects_after(out.result), 0u);
       }
       // In flattened patches the energy of the angles alone may stick with vertices that were pushed
       // beyond the opposite corner, and leaves thin corners (known); Quad_regularity_energy does not,
@@ -667,8 +611,8 @@ void test_untangling()
       if(!is_regularity)
         out = optimized(optimized(out.after, fine, RCO::Quad_regularity_energy(1), options).after,
                         fine, energy, options);
-      RCO_CHECK_EQUAL(number_nonconvex_in_plane(out.after), std::size_t(0));
-      RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+      RCO_CHECK_EQUAL(number_nonconvex_in_plane(out.after), 0u);
+      RCO_CHECK_EQUAL(defects_after(out.result), 0u);
       RCO_CHECK_LESS(80., out.corners.minimum);
       RCO_CHECK_LESS(out.corners.maximum, 100.);
     });
@@ -687,7 +631,7 @@ void test_untangling()
     for_energies_and_movers([&](const auto& energy, const Options& options) {
       const Outcome out = optimized(shape, icosphere(4), energy, options);
       RCO_CHECK_LESS_EQUAL(moved, out.result.initial_number_of_nonconvex_quads);
-      RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+      RCO_CHECK_EQUAL(defects_after(out.result), 0u);
       RCO_CHECK_LESS(30., out.corners.minimum);
       RCO_CHECK_LESS(out.corners.maximum, 160.);
     });
@@ -716,9 +660,9 @@ void test_near_degenerate()
         const double bend = std::tan(0.05 * pi / 180) * std::sqrt(0.5); // over half a diagonal
         s.points[at(i, j)] += h * (0.5 - bend * std::sqrt(0.5)) * Vector_3(1, 1, 0);
       }
-    const RCO::Corner_angle_statistics angles = RCO::corner_angle_statistics(make_mesh<Mesh>(s));
+    const RCO::Corner_angle_statistics angles = RCO::corner_angle_statistics(mesh_of(s));
     RCO_CHECK_NEAR(angles.maximum, 179.9, 1e-3);
-    RCO_CHECK_EQUAL(number_nonconvex_in_plane(s), std::size_t(0));
+    RCO_CHECK_EQUAL(number_nonconvex_in_plane(s), 0u);
     shapes.push_back({"flat corners", s});
   }
   {
@@ -732,16 +676,15 @@ void test_near_degenerate()
   for(const auto& shape : shapes)
   {
     const Scope scope(shape.first);
-    const RCO::Edge_statistics e = RCO::edge_statistics(make_mesh<Mesh>(shape.second));
-    const RCO::Corner_angle_statistics a =
-      RCO::corner_angle_statistics(make_mesh<Mesh>(shape.second));
+    const RCO::Edge_statistics e = RCO::edge_statistics(mesh_of(shape.second));
+    const RCO::Corner_angle_statistics a = RCO::corner_angle_statistics(mesh_of(shape.second));
     std::cout << "  " << shape.first << ": edges " << e.minimum << " to " << e.maximum
               << ", angles " << a.minimum << " to " << a.maximum << std::endl;
     for_energies_and_movers([&](const auto& energy, const Options& options) {
       typedef typename std::decay<decltype(energy)>::type Energy;
       const Outcome out = optimized(shape.second, fine, energy, options);
       RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
-      RCO_CHECK_EQUAL(defects_after(out.result), std::size_t(0));
+      RCO_CHECK_EQUAL(defects_after(out.result), 0u);
       // flattened patches alone may stick with angles alone, and where they do depends on rounding
       if(!options.on_surface && std::is_same<Energy, RCO::Quad_angle_energy>::value)
         return;
@@ -760,8 +703,8 @@ void test_off_reference()
     std::size_t held = 0;
     for(const char c : options.is_constrained)
       held += c;
-    Mesh mesh = make_mesh<Mesh>(shape);
-    const Mesh r = make_mesh<Mesh>(reference);
+    Mesh mesh = mesh_of(shape);
+    const Mesh r = mesh_of(reference);
     const RCO::Distance_to_reference start = RCO::distance_to_reference(mesh, r);
     RCO_CHECK_NEAR(start.maximum, largest, tolerance);
     const Outcome out = run<CGAL::Sequential_tag>(mesh, r, energy, options);
@@ -804,74 +747,12 @@ void test_off_reference()
     }
 }
 
-void test_measures()
-{
-  // rectangles of 1 by 3: as many edges of either length, but for the border
-  Shape bricks = plane_grid(4, 4, 4, true);
-  for(Vector_3& p : bricks.points)
-    p.x() *= 3;
-  const RCO::Edge_statistics e = RCO::edge_statistics(make_mesh<Mesh>(bricks));
-  RCO_CHECK_NEAR(e.mean, 2, 1e-12);
-  RCO_CHECK_NEAR(e.minimum, 0.5, 1e-12);
-  RCO_CHECK_NEAR(e.maximum, 1.5, 1e-12);
-  RCO_CHECK_NEAR(e.standard_deviation, 0.5, 1e-12);
-
-  // rhombi of 60 and 120 degrees
-  Shape rhombi = plane_grid(3, 3, 3, true);
-  for(Vector_3& p : rhombi.points)
-    p = Vector_3(p.x() + 0.5 * p.y(), 0.5 * std::sqrt(3.) * p.y(), 0);
-  const RCO::Corner_angle_statistics c = RCO::corner_angle_statistics(make_mesh<Mesh>(rhombi));
-  RCO_CHECK_NEAR(c.minimum, 60, 1e-9);
-  RCO_CHECK_NEAR(c.maximum, 120, 1e-9);
-  RCO_CHECK_NEAR(c.mean, 90, 1e-9);
-  RCO_CHECK_NEAR(c.standard_deviation, 30, 1e-9);
-
-  // A square whose halves are lifted by an angle t on both sides of a diagonal: the other diagonal
-  // passes at a height of sin t, and is 2 cos t long where the first is 2.
-  for(const double t : {0., 0.01, 0.3, 1.2})
-  {
-    Shape bent;
-    bent.add(1, 0, 0);
-    bent.add(0, std::cos(t), std::sin(t));
-    bent.add(-1, 0, 0);
-    bent.add(0, -std::cos(t), std::sin(t));
-    bent.faces = {{0, 1, 2, 3}};
-    const RCO::Planarity p = RCO::planarity(make_mesh<Mesh>(bent));
-    RCO_CHECK_NEAR(p.maximum, std::tan(0.5 * t), 1e-12);
-    RCO_CHECK_NEAR(p.mean, p.maximum, 1e-15);
-    RCO_CHECK_EQUAL(p.number_of_quads, std::size_t(1));
-  }
-  const RCO::Planarity mixed = RCO::planarity(
-    make_mesh<Mesh>(split(plane_grid(3, 3, 1, true), [](int f) { return f % 3 == 0; })));
-  RCO_CHECK_EQUAL(mixed.number_of_quads, std::size_t(6));
-  RCO_CHECK_NEAR(mixed.maximum, 0, 1e-12);
-
-  // quads that are not convex, on either orientation of the reference; triangles do not count
-  Shape grid = plane_grid(9, 9, 9, true);
-  for(const int v : {22, 26, 62})
-    grid.points[v] += Vector_3(0.6, 0.7, 0);   // a reflex corner each
-  std::swap(grid.points[65], grid.points[66]); // the two at the edge cross themselves
-  const std::size_t broken = number_nonconvex_in_plane(grid);
-  RCO_CHECK_EQUAL(broken, std::size_t(3 + 2));
-  const Shape floor = plane_grid(7, 7, 9);
-  for(const Shape& r : {floor, turned_round(floor), plane_grid(5, 5, 9, true)})
-    RCO_CHECK_EQUAL(RCO::number_of_nonconvex_quads(make_mesh<Mesh>(grid), make_mesh<Mesh>(r)),
-                    broken);
-  RCO_CHECK_EQUAL(
-    RCO::number_of_nonconvex_quads(make_mesh<Mesh>(turned_round(grid)), make_mesh<Mesh>(floor)),
-    broken);
-  RCO_CHECK_EQUAL(RCO::number_of_nonconvex_quads(
-                    make_mesh<Mesh>(split(grid, [](int) { return true; })), make_mesh<Mesh>(floor)),
-                  std::size_t(0));
-}
-
 } // namespace
 
 int main()
 {
   run_test("elements", test_elements);
   run_test("errors", test_errors);
-  run_test("measures", test_measures);
   run_test("plane", test_plane_recovery);
   run_test("tube", test_tube_recovery);
   run_test("curved", test_curved_recovery);

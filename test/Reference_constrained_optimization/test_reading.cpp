@@ -53,7 +53,7 @@ void test_locations()
 void test_constraints()
 {
   const int n = 6;
-  Mesh mesh = make_mesh<Mesh>(plane_grid(n, n));
+  Mesh mesh = mesh_of(plane_grid(n, n));
   auto vertex_map = mesh.add_property_map<Mesh::Vertex_index, bool>("v:fixed", false).first;
   auto edge_map = mesh.add_property_map<Mesh::Edge_index, bool>("e:fixed", false).first;
   const auto id = [](int i, int j) { return unsigned(j * (n + 1) + i); };

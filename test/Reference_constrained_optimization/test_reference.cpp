@@ -546,7 +546,7 @@ std::pair<RCO::Feature_report, Mesh::Property_map<Mesh::Edge_index, bool>> detec
 
 std::size_t number_of_features(const Shape& shape)
 {
-  Mesh mesh = make_mesh<Mesh>(shape);
+  Mesh mesh = mesh_of(shape);
   return detected(mesh).first.number_of_feature_edges;
 }
 
@@ -555,7 +555,7 @@ void test_detection()
   const int n = 6;
   for(const bool quads : {false, true})
   {
-    Mesh mesh = make_mesh<Mesh>(cube(n, quads));
+    Mesh mesh = mesh_of(cube(n, quads));
     const auto map = detected(mesh).second;
     for(const Mesh::Edge_index e : mesh.edges())
     {
@@ -566,13 +566,13 @@ void test_detection()
   }
   RCO_CHECK_EQUAL(number_of_features(noisy(cube(n), 0.03 / n)), std::size_t(12 * n));
   RCO_CHECK_EQUAL(number_of_features(turned_round(cube(n))), std::size_t(12 * n));
-  RCO_CHECK_EQUAL(number_of_features(closed_cylinder(24, 4, 1, 2)), std::size_t(48));
-  RCO_CHECK_EQUAL(number_of_features(tetrahedron()), std::size_t(6)); // all there is is sharp
+  RCO_CHECK_EQUAL(number_of_features(closed_cylinder(24, 4, 1, 2)), 48u);
+  RCO_CHECK_EQUAL(number_of_features(tetrahedron()), 6u); // all there is is sharp
 
   const Shape ball = icosphere(3);
   for(const double noise : {0., 0.01, 0.03, 0.06})
-    RCO_CHECK_EQUAL(number_of_features(noisy(ball, noise)), std::size_t(0));
-  RCO_CHECK_EQUAL(number_of_features(torus(30, 12)), std::size_t(0));
+    RCO_CHECK_EQUAL(number_of_features(noisy(ball, noise)), 0u);
+  RCO_CHECK_EQUAL(number_of_features(torus(30, 12)), 0u);
   // each component is judged by itself
   RCO_CHECK_EQUAL(number_of_features(joined(cube(n), noisy(ball, 0.06), Vector_3(5, 0, 0))),
                   std::size_t(12 * n));
@@ -592,7 +592,7 @@ Shape fading_roof(int columns, int rows)
 void test_fading_lines()
 {
   const int columns = 60;
-  Mesh mesh = make_mesh<Mesh>(fading_roof(columns, 6));
+  Mesh mesh = mesh_of(fading_roof(columns, 6));
   const auto map = detected(mesh).second;
   for(const Mesh::Edge_index e : mesh.edges())
   {

@@ -200,7 +200,7 @@ void test_round(internal::Moves moves, const Shape& start, const Shape& regular)
                            std::vector<char>(mesh.number_of_faces(), 1), random),
                          moves, density, settings));
   const internal::Global_measure after = measure();
-  RCO_CHECK_LESS(std::size_t(3), recorder.accepted);
+  RCO_CHECK_LESS(3u, recorder.accepted);
   RCO_CHECK_LESS(recorder.energy_change, 0.);
   RCO_CHECK_NEAR(after.energy - before.energy, recorder.energy_change, 1e-9 * before.energy);
   RCO_CHECK_EQUAL(long(after.defects()) - long(before.defects()), recorder.defect_change);

@@ -407,10 +407,10 @@ void test_patches()
     test_disk_topology(s.second, s.first);
     test_growing(s.second, s.first);
   }
-  RCO_CHECK_EQUAL(test_growing(tetrahedron(), "a tetrahedron"), std::size_t(3));
-  RCO_CHECK_EQUAL(test_growing(strip, "two triangles"), std::size_t(2));
-  RCO_CHECK_EQUAL(test_growing(plane_grid(9, 9), "a plane"), std::size_t(162));
-  RCO_CHECK_EQUAL(test_growing(plane_grid(8, 7, 1, true), "quads"), std::size_t(56));
+  RCO_CHECK_EQUAL(test_growing(tetrahedron(), "a tetrahedron"), 3u);
+  RCO_CHECK_EQUAL(test_growing(strip, "two triangles"), 2u);
+  RCO_CHECK_EQUAL(test_growing(plane_grid(9, 9), "a plane"), 162u);
+  RCO_CHECK_EQUAL(test_growing(plane_grid(8, 7, 1, true), "quads"), 56u);
   // a closed surface keeps a hole
   const std::size_t on_sphere = test_growing(sphere, "a sphere");
   RCO_CHECK(on_sphere > 200 && on_sphere < sphere.faces.size());
@@ -451,7 +451,7 @@ void test_touched()
   parameters.maximum_patch_size = 4;
   internal::Patch_selection tiny(mesh, parameters);
   const std::vector<int> few = tiny.grow(60, geometry_of(plane, mesh), nothing_taken);
-  RCO_CHECK_EQUAL(few.size(), std::size_t(4));
+  RCO_CHECK_EQUAL(few.size(), 4u);
   RCO_CHECK(tiny.touched(few) == std::vector<int>(1, 60));
 }
 
@@ -480,7 +480,7 @@ void test_threshold()
     }
     if(!is_flat)
       continue;
-    RCO_CHECK_EQUAL(patch.size(), std::size_t(72));
+    RCO_CHECK_EQUAL(patch.size(), 72u);
     for(const int f : patch)
       RCO_CHECK_LESS(0.99, box_geometry.normals[f].dot(box_geometry.normals[seed]));
   }
@@ -657,7 +657,7 @@ void test_partition()
       }
     RCO_CHECK(divided(mesh, all, 200, 0) != divided(mesh, all, 200, 1));
     RCO_CHECK(divided(mesh, std::vector<char>(all.size(), 0), 200, 0).empty());
-    RCO_CHECK_EQUAL(divided(mesh, all, 1000000, 0).size(), std::size_t(1));
+    RCO_CHECK_EQUAL(divided(mesh, all, 1000000, 0).size(), 1u);
     RCO_CHECK_EQUAL(divided(mesh, all, 1, 0).size(), all.size());
   }
   {
@@ -670,8 +670,8 @@ void test_partition()
     const std::vector<char> all(mesh.number_of_faces(), 1);
     for(unsigned int seed = 0; seed < 10; ++seed)
       for(const int size : {3, 40, 400, 100000})
-        RCO_CHECK_LESS_EQUAL(std::size_t(4), divided(mesh, all, size, seed).size());
-    RCO_CHECK_EQUAL(divided(mesh, all, 100000, 0).size(), std::size_t(4));
+        RCO_CHECK_LESS_EQUAL(4u, divided(mesh, all, size, seed).size());
+    RCO_CHECK_EQUAL(divided(mesh, all, 100000, 0).size(), 4u);
   }
   {
     const Scope s("some faces");

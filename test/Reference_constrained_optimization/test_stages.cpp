@@ -23,12 +23,11 @@ template <typename Tag>
 std::pair<Shape, RCO::Result>
 optimized(const Shape& start, const Shape& regular, bool finishes, unsigned int seed = 0)
 {
-  Mesh mesh = make_mesh<Mesh>(start);
-  const Mesh reference = make_mesh<Mesh>(regular);
-  const RCO::Result r = CGAL::reference_constrained_optimize<Tag>(
-    mesh, reference, RCO::Minimum_angle_energy(),
-    params::use_finishing_stage(finishes).random_seed(seed));
-  RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, std::size_t(0));
+  Mesh mesh = mesh_of(start);
+  const Mesh reference = mesh_of(regular);
+  const RCO::Result r =
+    improve_angles<Tag>(mesh, reference, params::use_finishing_stage(finishes).random_seed(seed));
+  RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, 0u);
   RCO_CHECK(RCO::distance_to_reference(mesh, reference).is_on_reference());
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   return {make_shape(mesh), r};
@@ -96,13 +95,13 @@ struct Largest_patches : RCO::Default_visitor
 void test_restarts()
 {
   const Shape ring = torus(80, 40), start = scrambled(ring, 0.3, 13, onto_torus(1, 0.4));
-  const Mesh reference = make_mesh<Mesh>(ring);
+  const Mesh reference = mesh_of(ring);
   for(const unsigned int maximum : {0u, 2000u, 2000000000u})
   {
     Largest_patches visitor;
-    Mesh mesh = make_mesh<Mesh>(start);
-    const RCO::Result r = CGAL::reference_constrained_optimize(
-      mesh, reference, RCO::Minimum_angle_energy(),
+    Mesh mesh = mesh_of(start);
+    const RCO::Result r = improve_angles(
+      mesh, reference,
       params::maximum_patch_size(maximum).use_finishing_stage(false).visitor(std::ref(visitor)));
     RCO_CHECK(r.status == RCO::Status::converged);
     if(maximum <= 2000)

@@ -96,7 +96,7 @@ void test_measures()
     return m;
   };
   const internal::Global_measure regular = measured();
-  RCO_CHECK_EQUAL(regular.defects(), std::size_t(0));
+  RCO_CHECK_EQUAL(regular.defects(), 0u);
   RCO_CHECK_EQUAL(regular.energy, regular.capped_energy);
   RCO_CHECK_NEAR(std::acos(regular.largest_cosine) * 180 / pi, smallest_angle(plane), 1e-9);
   internal::Located_vertex& v = scene.state.vertices[91 * 40 + 40];

@@ -52,7 +52,7 @@ void test_defect_repair()
                    const auto& defects, const auto& is_at) {
                  move(id(3, 3), 1.6, 0.1);
                  Sequential_defect_repair repair(state, start);
-                 RCO_CHECK_LESS(std::size_t(0), defects().number);
+                 RCO_CHECK_LESS(0u, defects().number);
                  repair.run();
                  RCO_CHECK(repair.has_restored_vertices());
                  RCO_CHECK(is_at(id(3, 3), start));
@@ -70,14 +70,14 @@ void test_defect_repair()
                  for(int j = 4; j < 9; ++j)
                    for(int i = 3; i < 6; ++i)
                      move(id(i, j), i == 3 ? 1.7 : i == 4 ? 1.3 : 0.4, 0);
-                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 RCO_CHECK_EQUAL(defects().number, 0u);
                  move(id(4, 6), 0.2, 0);
                  move(id(10, 10), 0.2, 0.1);
                  const Vertices gained = state.vertices;
-                 RCO_CHECK_LESS(std::size_t(0), defects().number);
+                 RCO_CHECK_LESS(0u, defects().number);
                  Sequential_defect_repair repair(state, start);
                  repair.run();
-                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 RCO_CHECK_EQUAL(defects().number, 0u);
                  RCO_CHECK(is_at(id(3, 6), start));
                  RCO_CHECK(is_at(id(10, 10), gained));
                });
@@ -106,12 +106,12 @@ void test_defect_repair()
                    const auto& defects, const auto& is_at) {
                  move(id(3, 3), 0.5 + 1e-12, 0.5 + 1e-12);
                  move(id(9, 9), 0.2, 0.1);
-                 RCO_CHECK_EQUAL(defects().number, std::size_t(1));
+                 RCO_CHECK_EQUAL(defects().number, 1u);
                  const Vertices gained = state.vertices;
                  Sequential_defect_repair repair(state, start);
                  repair.run();
                  RCO_CHECK(repair.has_restored_vertices());
-                 RCO_CHECK_EQUAL(defects().number, std::size_t(0));
+                 RCO_CHECK_EQUAL(defects().number, 0u);
                  RCO_CHECK(is_at(id(3, 3), start));
                  RCO_CHECK(is_at(id(9, 9), gained));
                });
@@ -146,7 +146,7 @@ void test_points()
   };
   const Shape sphere = placed(icosphere(2)),
               start = placed(scrambled(icosphere(2), 0.2, 1, onto_sphere));
-  Mesh mesh = make_mesh<Mesh>(start);
+  Mesh mesh = mesh_of(start);
   const internal::Frame frame(copy_of(sphere));
   Located_shape scene(start, sphere);
   std::vector<Vector_3> before;
