@@ -102,6 +102,15 @@ inline Shape compacted(const Shape& shape)
   return s;
 }
 
+// with the given vertices moved to one of their neighbours each
+inline Shape collapsed(Shape s, const std::vector<int>& vertices)
+{
+  const Indexed_mesh mesh = indexed(s);
+  for(const int v : vertices)
+    s.points[v] = s.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
+  return s;
+}
+
 // Vertices away from the border moved at random by up to `amount` of their shortest edge, then back
 // onto the surface by `project`.
 inline Shape

@@ -28,9 +28,8 @@ template <typename Tag = CGAL::Sequential_tag,
           typename M,
           typename R,
           typename NamedParameters = params::Default_named_parameters>
-RCO::Result improve_angles(M& mesh,
-                           const R& reference,
-                           const NamedParameters& np = params::default_values())
+RCO::Result
+improve_angles(M& mesh, const R& reference, const NamedParameters& np = params::default_values())
 {
   return CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(),
                                                    np);
@@ -114,9 +113,9 @@ void check_result(const Shape& before,
   std::size_t i = 0;
   for(const auto v : vertices(mesh))
     put(is_measured, v, is_free[i++]);
-  const RCO::Distance_to_reference distance = RCO::distance_to_reference(
-    mesh, reference, params::default_values(), params::default_values(),
-    [&](const auto& v) { return bool(get(is_measured, v)); });
+  const RCO::Distance_to_reference distance =
+    RCO::distance_to_reference(mesh, reference, params::default_values(), params::default_values(),
+                               [&](const auto& v) { return bool(get(is_measured, v)); });
   RCO_CHECK_EQUAL(distance.number_of_vertices, number_free);
   RCO_CHECK_LESS_EQUAL(distance.maximum, distance.tolerance);
   RCO_CHECK_EQUAL(RCO::number_of_nonconvex_quads(mesh, reference), r.number_of_nonconvex_quads);

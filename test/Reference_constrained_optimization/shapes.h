@@ -413,6 +413,12 @@ inline bool same_bits(const Shape& a, const Shape& b)
   return true;
 }
 
+// of a triangle: its normal, twice its area long
+inline Vector_3 vector_area(const Shape& s, const std::vector<int>& t)
+{
+  return (s.points[t[1]] - s.points[t[0]]).cross(s.points[t[2]] - s.points[t[0]]);
+}
+
 // of triangles
 inline double volume(const Shape& s)
 {

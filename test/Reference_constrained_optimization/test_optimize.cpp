@@ -5,21 +5,12 @@
 // The whole optimization: what every result must satisfy, whatever the mesh.
 
 #include "Recorder.h"
-#include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
-
-#include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
-#include <CGAL/reference_constrained_optimize.h>
+#include "optimization.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_tree.h>
 
-#ifdef CGAL_LINKED_WITH_TBB
-#include <tbb/global_control.h>
-#endif
-
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <set>
@@ -39,19 +30,28 @@ struct Options
   bool expect_throw = false;
 };
 
+struct Measures
+{
+  double energy = 0; // mean
+  std::size_t flips = 0, folds = 0;
+  bool is_plain = true; // no element is inverted or near its cap
+  double smallest_angle = 180, mean_angle = 0;
+};
+
 struct Outcome
 {
   RCO::Result result;
   Recorder recorder;
   Shape before, after, reference; // coordinates as the point types hold them
+  Measures measures;              // in the end
   std::vector<char> is_free;
   std::vector<std::pair<int, Vector_3>> locations; // face of the reference, weights of its corners
   bool thrown = false;
 };
 
-// calls the function with everything recorded
-template <typename Tag, typename M, typename R, typename Energy>
-Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& options)
+// calls the function for Minimum_angle_energy(k) with everything recorded
+template <typename Tag, typename M, typename R>
+Outcome recorded(M& mesh, const R& reference, const Options& options, double k)
 {
   typedef typename boost::graph_traits<R>::face_descriptor Reference_face;
   typedef std::pair<Reference_face, std::array<double, 3>> Location;
@@ -60,7 +60,7 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   out.reference = make_shape(reference);
   out.recorder = options.recorder;
 
-  const Indexed_mesh indices = indexed(out.before);
+  out.is_free = free_vertices(out.before, options.vertex_is_constrained);
   auto vertex_map = get(CGAL::dynamic_vertex_property_t<bool>(), mesh);
   auto edge_map = get(CGAL::dynamic_edge_property_t<bool>(), mesh);
   auto location_map = get(CGAL::dynamic_vertex_property_t<Location>(), mesh);
@@ -68,13 +68,8 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   int i = 0;
   for(const auto v : vertices(mesh))
   {
-    const bool constrained =
-      !options.vertex_is_constrained.empty() && options.vertex_is_constrained[i];
-    put(vertex_map, v, constrained);
-    put(vertex_index, v, i);
-    out.is_free.push_back(!constrained && !indices.is_border_vertex[i] &&
-                          indices.vertex_begin[i] < indices.vertex_begin[i + 1]);
-    ++i;
+    put(vertex_map, v, !options.vertex_is_constrained.empty() && options.vertex_is_constrained[i]);
+    put(vertex_index, v, i++);
   }
   for(const auto e : edges(mesh))
   {
@@ -89,7 +84,7 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   try
   {
     out.result =
-      CGAL::reference_constrained_optimize<Tag>(mesh, reference, energy,
+      CGAL::reference_constrained_optimize<Tag>(mesh, reference, RCO::Minimum_angle_energy(k),
                                                 params::developability_threshold(options.threshold)
                                                   .maximum_patch_size(options.patch_size)
                                                   .vertex_location_map(location_map)
@@ -107,6 +102,7 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   RCO_CHECK_EQUAL(out.thrown, options.expect_throw);
   out.after = make_shape(mesh);
 
+  const Indexed_mesh indices = indexed(out.before);
   auto face_index = get(CGAL::dynamic_face_property_t<int>(), reference);
   int f = 0;
   for(const auto face : faces(reference))
@@ -127,25 +123,13 @@ Outcome run(M& mesh, const R& reference, const Energy& energy, const Options& op
   return out;
 }
 
-struct Measures
-{
-  double energy = 0; // mean
-  std::size_t flips = 0, folds = 0;
-  bool is_plain = true; // no element is inverted or near its cap
-  double smallest_angle = 180, mean_angle = 0;
-};
-
 // of triangles as they lie on the reference, for Minimum_angle_energy(k)
 Measures measure(const Shape& shape, const Outcome& out, double k)
 {
   std::vector<Vector_3> corner_normals(out.reference.points.size(), Vector_3::Zero());
   for(const auto& t : out.reference.faces)
-  {
-    const Vector_3 n = (out.reference.points[t[1]] - out.reference.points[t[0]])
-                         .cross(out.reference.points[t[2]] - out.reference.points[t[0]]);
     for(const int v : t)
-      corner_normals[v] += n;
-  }
+      corner_normals[v] += vector_area(out.reference, t);
   for(Vector_3& n : corner_normals)
     n.normalize();
   const auto normal_at = [&](int v) {
@@ -161,7 +145,7 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
   for(const auto& t : shape.faces)
   {
     const Vector_3 &a = shape.points[t[0]], &b = shape.points[t[1]], &c = shape.points[t[2]];
-    const Vector_3 n = (b - a).cross(c - a);
+    const Vector_3 n = vector_area(shape, t);
     normals.push_back(n);
     const double turn = n.dot(normal_at(t[0]) + normal_at(t[1]) + normal_at(t[2]));
     m.flips += turn < 0;
@@ -186,11 +170,10 @@ Measures measure(const Shape& shape, const Outcome& out, double k)
 }
 
 // All that must hold of any run.
-Measures check_outcome(const Outcome& out, double k = 1)
+void check_outcome(const Outcome& out)
 {
   const RCO::Result& r = out.result;
   const Recorder& seen = out.recorder;
-  namespace internal = CGAL::Reference_constrained_optimization::internal;
   const Indexed_mesh surface = indexed(out.reference);
   const std::vector<Vector_3>& points = out.reference.points;
   const double largest =
@@ -198,15 +181,10 @@ Measures check_outcome(const Outcome& out, double k = 1)
   const double tolerance = 1e-12 * internal::bounding_box_diagonal(surface, points) +
                            4 * std::numeric_limits<double>::epsilon() * largest;
 
-  RCO_CHECK(out.before.faces == out.after.faces);
-  std::size_t number_free = 0;
+  const std::size_t number_free = check_vertices(out.before, out.after, out.is_free);
   for(std::size_t v = 0; v < out.after.points.size(); ++v)
   {
     const Vector_3& p = out.after.points[v];
-    RCO_CHECK(p.allFinite());
-    if(!out.is_free[v])
-      RCO_CHECK(same_bits(p, out.before.points[v]));
-    number_free += out.is_free[v];
     if(out.locations[v].first < 0)
       continue;
     const Vector_3& b = out.locations[v].second;
@@ -215,22 +193,15 @@ Measures check_outcome(const Outcome& out, double k = 1)
     const std::vector<int>& t = out.reference.faces[out.locations[v].first];
     const Vector_3 q = b(0) * out.reference.points[t[0]] + b(1) * out.reference.points[t[1]] +
                        b(2) * out.reference.points[t[2]];
-    if(out.is_free[v])
-      RCO_CHECK_LESS_EQUAL((p - q).norm(), tolerance);
-    else
-      RCO_CHECK_LESS_EQUAL((p - q).norm(), r.largest_initial_distance + tolerance);
+    RCO_CHECK_LESS_EQUAL((p - q).norm(),
+                         tolerance + (out.is_free[v] ? 0 : r.largest_initial_distance));
   }
-  const Measures after = measure(out.after, out, k);
   if(out.thrown)
-    return after; // there is no result
+    return; // there is no result
 
   RCO_CHECK_EQUAL(r.number_of_free_vertices, number_free);
-  RCO_CHECK(std::isfinite(r.initial_energy) && std::isfinite(r.final_energy));
-  const std::size_t defects_before = r.initial_number_of_flips + r.initial_number_of_fold_edges;
-  const std::size_t defects_after = r.number_of_flips + r.number_of_fold_edges;
-  RCO_CHECK_LESS_EQUAL(defects_after, defects_before);
-  if(defects_after == defects_before)
-    RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
+  check_progress(r);
+  const Measures& after = out.measures;
   RCO_CHECK_EQUAL(after.flips, r.number_of_flips);
   RCO_CHECK_EQUAL(after.folds, r.number_of_fold_edges);
   if(after.is_plain)
@@ -247,23 +218,32 @@ Measures check_outcome(const Outcome& out, double k = 1)
   RCO_CHECK_LESS_EQUAL(r.number_of_flattened_patches, r.number_of_accepted_patches);
   seen.check_sums(r,
                   double(out.before.faces.size()) * (out.before.faces.front().size() == 4 ? 4 : 1));
-  for(std::size_t i = 0; i < seen.energies.size() && defects_before == 0; ++i)
+  for(std::size_t i = 0; i < seen.energies.size() && defects_before(r) == 0; ++i)
     RCO_CHECK_LESS_EQUAL(seen.energies[i], i == 0 ? r.initial_energy * (1 + on_the_way)
                                                   : seen.energies[i - 1] * (1 + 1e-12));
   RCO_CHECK(r.running_time >= 0);
   if(r.status == RCO::Status::nothing_to_do)
     RCO_CHECK(r.number_of_iterations == 0);
-  return after;
 }
 
-// the run and all checks, for a mesh and a reference of the usual type
-Outcome optimized(const Shape& shape, const Shape& reference, const Options& options = Options())
+// the run and all checks
+template <typename Tag = CGAL::Sequential_tag, typename M, typename R>
+Outcome run(M& mesh, const R& reference, const Options& options, double k = 1)
 {
-  Mesh mesh = mesh_of(shape);
-  const Mesh r = mesh_of(reference);
-  Outcome out = run<CGAL::Sequential_tag>(mesh, r, RCO::Minimum_angle_energy(), options);
+  Outcome out = recorded<Tag>(mesh, reference, options, k);
+  out.measures = measure(out.after, out, k);
   check_outcome(out);
   return out;
+}
+
+template <typename Tag = CGAL::Sequential_tag>
+Outcome optimized(const Shape& shape,
+                  const Shape& reference,
+                  const Options& options = Options(),
+                  double k = 1)
+{
+  Mesh mesh = mesh_of(shape);
+  return run<Tag>(mesh, mesh_of(reference), options, k);
 }
 
 // scrambled regular shapes become regular again
@@ -275,8 +255,8 @@ void test_recovery(const Shape& regular,
   const Scope scope("recovery of " + name);
   const Shape rough = scrambled(regular, 0.3, 1, project);
   const Outcome out = optimized(rough, regular);
-  const Measures m = measure(out.after, out, 1);
-  RCO_CHECK_EQUAL(out.result.number_of_flips + out.result.number_of_fold_edges, 0u);
+  const Measures& m = out.measures;
+  RCO_CHECK_EQUAL(defects_after(out.result), 0u);
   RCO_CHECK_LESS(smallest_angle(rough), 0.6 * smallest_angle(regular));
   RCO_CHECK_LESS_EQUAL(least_part * smallest_angle(regular), m.smallest_angle);
   RCO_CHECK_LESS_EQUAL(0.97 * mean_smallest_angle(regular), m.mean_angle);
@@ -325,22 +305,16 @@ struct Corner_energy
 
 void test_quads()
 {
-  Shape grid = plane_grid(12, 10, 1, true);
-  Shape rough = scrambled(grid, 0.3, 2, onto_plane);
-  for(Shape* s : {&grid, &rough})
-    for(Vector_3& p : s->points)
-      p.z() = 0.1 * p.x() * p.x();
-  Mesh mesh = mesh_of(rough);
-  const Mesh reference = mesh_of(grid);
+  const auto bend = [](const Vector_3& p) { return Vector_3(p.x(), p.y(), 0.1 * p.x() * p.x()); };
+  const Shape grid = plane_grid(12, 10, 1, true);
+  Mesh mesh = mesh_of(deformed(scrambled(grid, 0.3, 2, onto_plane), bend));
+  const Shape rough = make_shape(mesh);
+  const Mesh reference = mesh_of(deformed(grid, bend));
   const RCO::Result r = CGAL::reference_constrained_optimize(mesh, reference, Corner_energy());
+  check_result(rough, mesh, reference, r);
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   RCO_CHECK_NEAR(r.final_energy, std::exp(2.), 0.05 * std::exp(2.));
   RCO_CHECK_EQUAL(r.number_of_flips, 0u);
-  const Shape after = make_shape(mesh);
-  const Indexed_mesh indices = indexed(rough);
-  for(std::size_t v = 0; v < after.points.size(); ++v)
-    if(indices.is_border_vertex[v])
-      RCO_CHECK(same_bits(after.points[v], rough.points[v]));
 }
 
 // small meshes and those with nothing to do
@@ -452,12 +426,6 @@ void test_constraints()
     const int n = 8;
     Shape shape = cube(n);
     const Shape reference = shape;
-    const auto number_of_planes = [](const Vector_3& p) {
-      int count = 0;
-      for(int i = 0; i < 3; ++i)
-        count += p(i) == 0 || p(i) == 1;
-      return count;
-    };
     Random random(7);
     for(Vector_3& p : shape.points)
       if(number_of_planes(p) == 1)
@@ -469,11 +437,7 @@ void test_constraints()
       for(int i = 0; i < 3; ++i)
       {
         const int a = t[i], b = t[(i + 1) % 3];
-        int shared = 0;
-        for(int d = 0; d < 3; ++d)
-          shared += shape.points[a](d) == shape.points[b](d) &&
-                    (shape.points[a](d) == 0 || shape.points[a](d) == 1);
-        if(shared == 2)
+        if(number_of_planes(0.5 * (shape.points[a] + shape.points[b])) == 2)
           options.constrained_edges.insert({(std::min)(a, b), (std::max)(a, b)});
       }
     RCO_CHECK_EQUAL(options.constrained_edges.size(), std::size_t(12 * n));
@@ -488,31 +452,24 @@ void test_constraints()
 void test_degenerate_faces()
 {
   const Shape regular = icosphere(3);
-  Shape shape = scrambled(regular, 0.25, 8, onto_sphere);
-  const Indexed_mesh mesh = indexed(shape);
+  const std::vector<int> moved = {100, 250, 400, 600};
+  const Shape shape = collapsed(scrambled(regular, 0.25, 8, onto_sphere), moved);
   std::size_t degenerate = 0;
-  for(const int v : {100, 250, 400, 600})
-    shape.points[v] = shape.points[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])];
   for(const auto& t : shape.faces)
-    degenerate += (shape.points[t[1]] - shape.points[t[0]])
-                    .cross(shape.points[t[2]] - shape.points[t[0]])
-                    .norm() == 0;
+    degenerate += vector_area(shape, t).norm() == 0;
   RCO_CHECK_EQUAL(degenerate, 8u);
   const Outcome out = optimized(shape, regular);
-  const Measures m = measure(out.after, out, 1);
-  RCO_CHECK_LESS(mean_smallest_angle(shape) + 5, m.mean_angle);
+  RCO_CHECK_LESS(mean_smallest_angle(shape) + 5, out.measures.mean_angle);
   // they open, as they may
-  RCO_CHECK_LESS(20., m.smallest_angle);
+  RCO_CHECK_LESS(20., out.measures.smallest_angle);
 
   // the same vertices cannot move: their faces stay as they are, everything else improves
   Options options;
-  options.vertex_is_constrained.assign(shape.points.size(), 0);
-  for(const int v : {100, 250, 400, 600})
-    options.vertex_is_constrained[v] =
-      options.vertex_is_constrained[mesh.target(mesh.vertex_corners[mesh.vertex_begin[v]])] = 1;
+  for(const Vector_3& p : shape.points)
+    options.vertex_is_constrained.push_back(
+      std::any_of(moved.begin(), moved.end(), [&](int v) { return shape.points[v] == p; }));
   const Outcome held = optimized(shape, regular, options);
-  const Measures h = measure(held.after, held, 1);
-  RCO_CHECK_LESS(mean_smallest_angle(shape) + 4, h.mean_angle);
+  RCO_CHECK_LESS(mean_smallest_angle(shape) + 4, held.measures.mean_angle);
   std::size_t bad = 0;
   for(const auto& t : held.after.faces)
     bad += smallest_angle(held.after.points[t[0]], held.after.points[t[1]],
@@ -520,9 +477,8 @@ void test_degenerate_faces()
   RCO_CHECK_LESS_EQUAL(bad, 40u);
 
   // a mesh without any area is refused, not touched
-  Shape line = plane_grid(5, 5);
-  for(Vector_3& p : line.points)
-    p = Vector_3(p.x(), 0.1 + 0.7 * p.x(), 1e-3);
+  const Shape line = deformed(
+    plane_grid(5, 5), [](const Vector_3& p) { return Vector_3(p.x(), 0.1 + 0.7 * p.x(), 1e-3); });
   Mesh held_back = mesh_of(line);
   const Mesh plane = mesh_of(plane_grid(4, 4, 2));
   RCO_CHECK_THROWS(improve_angles(held_back, plane), RCO::Invalid_input,
@@ -534,12 +490,10 @@ void test_degenerate_faces()
   RCO_CHECK_LESS(both.result.final_energy, both.result.initial_energy);
 
   // a folded start: no more flips and folds than before, and energy where they stay
-  Shape folded = scrambled(plane_grid(14, 14), 0.8, 10, onto_plane);
-  const Outcome unfolded = optimized(folded, plane_grid(14, 14));
+  const Outcome unfolded =
+    optimized(scrambled(plane_grid(14, 14), 0.8, 10, onto_plane), plane_grid(14, 14));
   RCO_CHECK_LESS(5u, unfolded.result.initial_number_of_flips);
-  RCO_CHECK_LESS(unfolded.result.number_of_flips + unfolded.result.number_of_fold_edges,
-                 unfolded.result.initial_number_of_flips +
-                   unfolded.result.initial_number_of_fold_edges);
+  RCO_CHECK_LESS(defects_after(unfolded.result), defects_before(unfolded.result));
   std::cout << "scrambled beyond folding: " << unfolded.result.initial_number_of_flips
             << " flips and " << unfolded.result.initial_number_of_fold_edges << " fold edges -> "
             << unfolded.result.number_of_flips << " and " << unfolded.result.number_of_fold_edges
@@ -602,51 +556,23 @@ void test_determinism()
   RCO_CHECK_NEAR(third.result.final_energy, first.result.final_energy,
                  0.1 * first.result.final_energy);
 
-#ifdef CGAL_LINKED_WITH_TBB
   options.seed = 0;
-  for(const int threads : {1, 2, 8})
-  {
-    const Scope s(std::to_string(threads) + " threads");
-    tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    Mesh mesh = mesh_of(rough);
-    const Mesh reference = mesh_of(regular);
-    const Outcome out =
-      run<CGAL::Parallel_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
-    check_outcome(out);
+  with_threads([&](auto tag) {
+    const Outcome out = optimized<decltype(tag)>(rough, regular, options);
     RCO_CHECK(same_bits(first.after, out.after));
     RCO_CHECK_EQUAL(first.result.final_energy, out.result.final_energy);
     RCO_CHECK_EQUAL(first.result.number_of_patches, out.result.number_of_patches);
-  }
-#endif
+  });
 
   // the same object for both, or a copy of it
   Mesh alone = mesh_of(rough), other = mesh_of(rough);
   const Mesh copy = other;
-  options.seed = 0;
-  const Outcome same =
-    run<CGAL::Sequential_tag>(alone, alone, RCO::Minimum_angle_energy(), options);
-  const Outcome apart =
-    run<CGAL::Sequential_tag>(other, copy, RCO::Minimum_angle_energy(), options);
-  check_outcome(apart);
+  const Outcome same = run(alone, alone, options), apart = run(other, copy, options);
   RCO_CHECK(same_bits(same.after, apart.after));
   RCO_CHECK_EQUAL(same.result.final_energy, apart.result.final_energy);
   RCO_CHECK_LESS(same.result.final_energy, same.result.initial_energy);
   RCO_CHECK_EQUAL(same.result.largest_initial_distance, 0.);
 }
-
-// counts how often it is asked whether to go on, as after every few hundred trials of a search
-struct Question_counter : RCO::Default_visitor
-{
-  explicit Question_counter(long& count) : m_count(&count) {}
-  bool go_further()
-  {
-    ++*m_count;
-    return true;
-  }
-
-private:
-  long* m_count;
-};
 
 // A cylinder of long strips is as good as it gets, nearly: what searches for better places all the same
 // is to give up soon.
@@ -654,11 +580,11 @@ void test_nothing_to_gain()
 {
   Mesh mesh = mesh_of(closed_cylinder(48, 1, 1, 30));
   const double smallest = smallest_angle(make_shape(mesh));
-  long questions = 0;
-  Question_counter visitor(questions);
-  const RCO::Result result = improve_angles(mesh, mesh, params::visitor(visitor));
+  Recorder recorder;
+  const RCO::Result result = improve_angles(mesh, mesh, params::visitor(std::ref(recorder)));
   RCO_CHECK_LESS(result.number_of_patches, 30u);
-  RCO_CHECK_LESS(questions, 1500);
+  // it is asked whether to go on after every few hundred trials of a search
+  RCO_CHECK_LESS(recorder.questions, 1500);
   RCO_CHECK_LESS_EQUAL(result.final_energy, result.initial_energy);
   RCO_CHECK_LESS_EQUAL(smallest, smallest_angle(make_shape(mesh)));
 }
@@ -716,16 +642,13 @@ void test_endings()
     const Scope s("thrown at patch " + std::to_string(patches));
     options.recorder.patches_until_throw = patches;
     options.expect_throw = true;
-    Mesh mesh = mesh_of(rough);
-    const Mesh reference = mesh_of(regular);
-    const Outcome out =
-      run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
-    const Measures m = check_outcome(out);
+    const Outcome out = optimized(rough, regular, options);
     RCO_CHECK_EQUAL(out.recorder.patches, std::size_t(patches + 1));
     // what was accepted up to then is written, and nothing else
     const double n = double(rough.faces.size());
     if(out.recorder.finishing == 0)
-      RCO_CHECK_NEAR(m.energy * n, complete.result.initial_energy * n + out.recorder.energy_change,
+      RCO_CHECK_NEAR(out.measures.energy * n,
+                     complete.result.initial_energy * n + out.recorder.energy_change,
                      on_the_way * complete.result.initial_energy * n);
     if(out.recorder.accepted > 0)
       RCO_CHECK_LESS(out.recorder.energy_change, 0.);
@@ -752,41 +675,26 @@ void test_endings()
 // a larger exponent raises the smallest angle
 void test_exponents()
 {
-  const Shape regular = icosphere(2);
   const Shape rough = scrambled(torus(30, 12), 0.3, 15, onto_torus(1, 0.4));
   for(const double k : {0.5, 2.})
   {
-    Mesh mesh = mesh_of(rough);
-    const Mesh reference = mesh_of(torus(30, 12));
     Options options;
     options.iterations = 5;
-    const Outcome out =
-      run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(k), options);
-    const Measures m = check_outcome(out, k);
-    RCO_CHECK_LESS(smallest_angle(rough) + 5, m.smallest_angle);
+    const Outcome out = optimized(rough, torus(30, 12), options, k);
+    RCO_CHECK_LESS(smallest_angle(rough) + 5, out.measures.smallest_angle);
   }
 }
 
-bool test_data(const std::string& name, unsigned int iterations)
+void test_data(const std::string& name, unsigned int iterations)
 {
   const Scope scope(name);
-#ifdef RCO_DATA_DIR
-  const Shape shape = read_off(std::string(RCO_DATA_DIR) + "/" + name);
-#else
-  const Shape shape;
-#endif
+  const Shape shape = read_data(name);
   if(shape.faces.empty())
-  {
-    std::cout << name << " was not found, skipped" << std::endl;
-    return false;
-  }
+    return;
   Options options;
   options.iterations = iterations;
-  Mesh mesh = mesh_of(shape);
-  const Mesh reference = mesh;
-  const Outcome out =
-    run<CGAL::Sequential_tag>(mesh, reference, RCO::Minimum_angle_energy(), options);
-  const Measures after = check_outcome(out);
+  const Outcome out = optimized(shape, shape, options);
+  const Measures& after = out.measures;
   const double before = smallest_angle(out.before);
   RCO_CHECK_EQUAL(out.result.largest_initial_distance, 0.);
   RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
@@ -798,7 +706,6 @@ bool test_data(const std::string& name, unsigned int iterations)
             << mean_smallest_angle(out.before) << " -> " << after.mean_angle << ", "
             << out.result.number_of_iterations << " iterations, " << out.result.running_time << " s"
             << std::endl;
-  return true;
 }
 
 // Distances of what the barrier watches, by the search tree: the larger of the two directions.
@@ -829,29 +736,19 @@ double watched_drift(const Mesh& mesh, const Mesh& reference)
 void test_drift(const std::string& name)
 {
   const Scope scope("drift of " + name);
-#ifdef RCO_DATA_DIR
-  const Mesh input = mesh_of(read_off(std::string(RCO_DATA_DIR) + "/" + name));
-#else
-  const Mesh input;
-#endif
+  const Mesh input = mesh_of(read_data(name));
   if(input.is_empty())
-  {
-    std::cout << name << " was not found, skipped" << std::endl;
     return;
-  }
   const double edge = RCO::drift(input, input).reference_mean_edge_length;
   const double infinity = std::numeric_limits<double>::infinity();
   double last = infinity;
   for(const double bound : {infinity, 0.5 * edge, -1., 0.1 * edge})
   {
     Mesh mesh = input;
+    const auto np = params::detect_features(false);
     const RCO::Result result =
-      bound < 0
-        ? improve_angles(mesh, input,
-                         CGAL::parameters::detect_features(false).number_of_iterations(5))
-        : improve_angles(
-            mesh, input,
-            CGAL::parameters::drift_bound(bound).detect_features(false).number_of_iterations(5));
+      bound < 0 ? improve_angles(mesh, input, np.number_of_iterations(5))
+                : improve_angles(mesh, input, np.drift_bound(bound).number_of_iterations(5));
     const double drift = watched_drift(mesh, input);
     RCO_CHECK_LESS(result.final_energy, result.initial_energy);
     if(bound == infinity)
@@ -871,9 +768,8 @@ void test_drift(const std::string& name)
     last = drift;
 
     // from there on with a smaller bound, nothing gets worse
-    const RCO::Result again = improve_angles(
-      mesh, input,
-      CGAL::parameters::drift_bound(0.05 * edge).detect_features(false).number_of_iterations(2));
+    const RCO::Result again =
+      improve_angles(mesh, input, np.drift_bound(0.05 * edge).number_of_iterations(2));
     RCO_CHECK_LESS_EQUAL(again.drift, again.initial_drift * (1 + 1e-12));
     RCO_CHECK_LESS_EQUAL(watched_drift(mesh, input), again.initial_drift * (1 + 1e-12));
   }
