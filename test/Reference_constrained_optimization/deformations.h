@@ -8,6 +8,8 @@
 
 #include "shapes.h"
 
+#include <Eigen/Geometry>
+
 namespace rco_test {
 
 typedef std::function<Vector_3(const Vector_3&)> Deformation;
@@ -28,6 +30,11 @@ inline Shape scaled(const Shape& s, double factor) { return scaled(s, factor, fa
 inline Shape shifted(const Shape& s, const Vector_3& shift)
 {
   return deformed(s, [=](const Vector_3& p) -> Vector_3 { return p + shift; });
+}
+
+inline Shape rotated(const Shape& s, const Eigen::Matrix3d& rotation)
+{
+  return deformed(s, [=](const Vector_3& p) -> Vector_3 { return rotation * p; });
 }
 
 // both meshes as one, the second shifted

@@ -389,6 +389,15 @@ inline Shape meridian_sphere(int columns, int rows)
   return s;
 }
 
+// the vertices' places in the xy-plane
+inline std::vector<Vector_2> planar_points(const Shape& s)
+{
+  std::vector<Vector_2> u;
+  for(const Vector_3& p : s.points)
+    u.push_back(p.head<2>());
+  return u;
+}
+
 inline int nearest(const Shape& s, const Vector_3& p)
 {
   int best = 0;

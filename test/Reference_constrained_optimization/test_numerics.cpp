@@ -319,14 +319,6 @@ internal::Planar_problem planar_problem(const Shape& shape, double edge)
   return problem;
 }
 
-std::vector<Vector_2> planar_points(const Shape& shape)
-{
-  std::vector<Vector_2> u;
-  for(const Vector_3& p : shape.points)
-    u.push_back(p.head<2>());
-  return u;
-}
-
 template <typename Density>
 double
 energy_of(const internal::Planar_problem& p, const Density& density, const std::vector<Vector_2>& u)

@@ -53,13 +53,6 @@ internal::Cone_proxy proxy_of(const Shape& shape)
   return proxy;
 }
 
-Shape rotated(Shape shape, const Eigen::Matrix3d& r)
-{
-  for(Vector_3& p : shape.points)
-    p = r * p;
-  return shape;
-}
-
 void test_cone_proxy()
 {
   Random random(1);
