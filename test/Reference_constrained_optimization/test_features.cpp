@@ -5,17 +5,10 @@
 // Feature edges of mechanical parts are kept by default, also where slivers cannot be opened. With
 // relax_constraints, vertices of borders and of constrained lines slide, and stay on their lines.
 
-#include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
-
-#include <CGAL/reference_constrained_optimize.h>
+#include "optimization.h"
 
 #include <CGAL/Polyhedron_3.h>
-
-#include <CGAL/Reference_constrained_optimization/quality_measures.h>
-#include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
-#include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -271,26 +264,29 @@ Case square_case(int n)
   return test;
 }
 
-// two squares that meet at a right angle in a constrained crease, whose ends are on the border
-Case crease_case(int n)
+// the same with a constrained line in the middle, whose ends are on the border
+Case divided_square_case(int n)
 {
   Case test = square_case(2 * n);
-  test.name = "crease";
   const int row = 2 * n + 1;
   for(int j = 0; j < row; ++j)
   {
-    Vector_3& p = test.start.points[j * row + n];
-    p.x() = 0.5;
+    test.start.points[j * row + n].x() = 0.5;
     if(j > 0)
       test.lines.insert({(j - 1) * row + n, j * row + n});
     test.is_line_vertex[j * row + n] = j > 0 && j < 2 * n;
   }
-  const double angle = 0.5 * pi;
-  test.reference = plane_grid(8, 8, 1);
-  for(Vector_3& p : test.start.points)
-    p = fold_at(p, 0.5, angle);
-  for(Vector_3& p : test.reference.points)
-    p = fold_at(p, 0.5, angle);
+  return test;
+}
+
+// two squares that meet at a right angle in a constrained crease
+Case crease_case(int n)
+{
+  Case test = divided_square_case(n);
+  test.name = "crease";
+  const auto fold = [](const Vector_3& p) { return fold_at(p, 0.5, 0.5 * pi); };
+  test.start = deformed(test.start, fold);
+  test.reference = deformed(plane_grid(8, 8, 1), fold);
   test.distance_to_line = [](const Vector_3& p) {
     const double u = p.x() + p.z(); // along the folded square
     return (std::min)(
@@ -303,16 +299,9 @@ Case crease_case(int n)
 // mesh forms along the rim is not the reference's.
 Case rim_case(int n)
 {
-  Case test = square_case(2 * n);
+  Case test = divided_square_case(n);
   test.name = "rim";
-  const int row = 2 * n + 1, facets = 5 * n + 3;
-  for(int j = 0; j < row; ++j)
-  {
-    test.start.points[j * row + n].x() = 0.5;
-    if(j > 0)
-      test.lines.insert({(j - 1) * row + n, j * row + n});
-    test.is_line_vertex[j * row + n] = j > 0 && j < 2 * n;
-  }
+  const int facets = 5 * n + 3, columns = 4;
   const auto on_rim = [facets](double k) {
     return Vector_3(std::cos(pi * k / facets), std::sin(pi * k / facets), 0);
   };
@@ -322,13 +311,9 @@ Case rim_case(int n)
     const Vector_3 rim = (1 - part) * on_rim(k) + part * on_rim(k + 1);
     return Vector_3((std::min)(r, 1.) * rim - (std::max)(r - 1, 0.) * Vector_3::UnitZ());
   };
-  const int columns = 4;
-  test.reference = plane_grid(columns, facets, 1);
-  for(Vector_3& p : test.reference.points)
-    p.y() *= double(columns) / facets;
-  for(Shape* shape : {&test.start, &test.reference})
-    for(Vector_3& p : shape->points)
-      p = bend(p);
+  test.start = deformed(test.start, bend);
+  test.reference =
+    deformed(scaled(plane_grid(columns, facets, 1), 1, double(columns) / facets, 1), bend);
   test.distance_to_line = [=](const Vector_3& p) {
     // to the straight sides, and to the polygons at three radii and heights
     double least = p.z() < 0 ? std::hypot(std::abs(p.x()) - 1, p.y()) : std::abs(p.y());
@@ -349,14 +334,11 @@ Case rim_case(int n)
 // a coin whose rim is a fillet of a few steps: there is no sharp edge
 Shape coin(int columns, int steps)
 {
-  Shape s = closed_cylinder(columns, steps, 1, 1);
-  for(Vector_3& p : s.points)
-  {
+  return deformed(closed_cylinder(columns, steps, 1, 1), [](const Vector_3& p) {
     const double r = std::hypot(p.x(), p.y()), angle = (p.z() - 0.5) * pi, fillet = 0.1;
     const double factor = r > 0 ? 1 + fillet * std::cos(angle) : 1;
-    p = Vector_3(factor * p.x(), factor * p.y(), fillet * std::sin(angle));
-  }
-  return s;
+    return Vector_3(factor * p.x(), factor * p.y(), fillet * std::sin(angle));
+  });
 }
 
 void test_rounded_parts()
