@@ -50,11 +50,7 @@ inline Shape wandered(const Shape& shape,
       length[v] += (shape.points[mesh.target(mesh.vertex_corners[k])] - shape.points[v]).norm() /
                    (mesh.vertex_begin[v + 1] - mesh.vertex_begin[v]);
   }
-  const auto normal = [&](int f) {
-    const std::vector<int>& t = shape.faces[f];
-    return Vector_3(
-      (result.points[t[1]] - result.points[t[0]]).cross(result.points[t[2]] - result.points[t[0]]));
-  };
+  const auto normal = [&](int f) { return vector_area(result, shape.faces[f]); };
   const auto is_well = [&](int v) {
     for(int k = mesh.vertex_begin[v]; k < mesh.vertex_begin[v + 1]; ++k)
     {

@@ -285,7 +285,7 @@ void test_known_optimum(const std::string& name, const Shape& shape, std::uint64
 {
   const Scope scope("back to " + name);
   double displacement = 0;
-  const internal::Reference_surface surface(copy_of(shape));
+  const internal::Reference_surface surface = surface_of(shape);
   const Shape start = wandered(shape, surface, 24, 0.3, seed, displacement);
   const Outcome out = optimized(shape, start, shape);
   RCO_CHECK_EQUAL(out.result.initial_number_of_flips, 0u);
@@ -777,7 +777,7 @@ void check_hard_start(const std::string& name,
                       double& largest)
 {
   const Scope scope("hard start: " + name);
-  const internal::Reference_surface surface(copy_of(reference));
+  const internal::Reference_surface surface = surface_of(reference);
   const Outcome out = optimized(source, start, reference);
   const double before = capped_energy(source, start, surface, 100),
                after = capped_energy(source, out.after, surface, 100);
@@ -801,7 +801,7 @@ void test_hard_starts()
       const Shape source = deformed(base, f), reference = deformed(fine, f);
       const Indexed_mesh mesh = indexed(source);
       // onto R, then some onto vertices of it that are up to two edges away
-      const internal::Reference_surface surface(copy_of(reference));
+      const internal::Reference_surface surface = surface_of(reference);
       Shape start = source;
       Random random(seed);
       const double edge = internal::mean_edge_length(mesh, source.points);

@@ -40,9 +40,7 @@ void test_frame()
         {Vector_3(0, 0, 0), Vector_3(3, 0, -2), Vector_3(30, -20, 10), Vector_3(1e3, 5, -7e3),
          Vector_3(-1e6, 2e6, 0), Vector_3(1e12, -1e9, 30)})
     {
-      Mesh_copy copy = copy_of(shape);
-      for(Vector_3& p : copy.points)
-        p = factor * (p + shift);
+      Mesh_copy copy = copy_of(scaled(shifted(shape, shift), factor));
       const Frame frame(copy);
       const double diagonal = bounding_box_diagonal(copy.mesh, copy.points);
       RCO_CHECK(diagonal <= frame.unit() && frame.unit() <= 2 * diagonal);
@@ -74,9 +72,7 @@ void test_frame()
   // invalid input remains unchanged
   for(const double factor : {0., 1e-170, 1e-70, 1e70, 1e160, 1e300})
   {
-    Mesh_copy copy = copy_of(shape);
-    for(Vector_3& p : copy.points)
-      p *= factor;
+    const Mesh_copy copy = copy_of(scaled(shape, factor));
     const Frame frame(copy);
     RCO_CHECK_EQUAL(frame.unit(), 1.);
     RCO_CHECK_EQUAL(number_of_changes(frame, copy), 0u);

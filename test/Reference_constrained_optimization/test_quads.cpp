@@ -101,10 +101,9 @@ std::size_t number_nonconvex_in_plane(const Shape& s)
 // a rectangle of triangles
 Shape ground(int nx, int ny, double width = 1, double height = 1)
 {
-  Shape s = plane_grid(nx, ny, 1);
-  for(Vector_3& p : s.points)
-    p = Vector_3(width * p.x(), height * p.y() * nx / ny, 0);
-  return s;
+  return deformed(plane_grid(nx, ny, 1), [=](const Vector_3& p) {
+    return Vector_3(width * p.x(), height * p.y() * nx / ny, 0);
+  });
 }
 
 struct Options

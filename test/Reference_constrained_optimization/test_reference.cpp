@@ -302,9 +302,7 @@ void test_normals()
     for(int i = 0; i < 3; ++i)
       if(rough.faces[f][i] == 7)
       {
-        const auto& t = rough.faces[f];
-        sum +=
-          (rough.points[t[1]] - rough.points[t[0]]).cross(rough.points[t[2]] - rough.points[t[0]]);
+        sum += vector_area(rough, rough.faces[f]);
         face = f;
         corner = i;
       }
@@ -366,34 +364,22 @@ void test_is_reachable()
 
 void test_bad_references()
 {
-  Shape flat;
-  flat.add(0, 0, 0);
-  flat.add(1, 0, 0);
-  flat.add(2, 0, 0);
-  flat.triangle(0, 1, 2);
+  const Shape flat{{Vector_3(0, 0, 0), Vector_3(1, 0, 0), Vector_3(2, 0, 0)}, {{0, 1, 2}}};
   RCO_CHECK_THROWS(surface_of(flat), RCO::Invalid_input, "zero area");
   // neither where rounding makes one
   Random random(12);
   for(int i = 0; i < 100; ++i)
   {
-    Shape line = icosphere(1);
     const Vector_3 origin = random.in_cube(100), direction = random.in_cube(1);
-    for(Vector_3& p : line.points)
-      p = origin + p.x() * direction;
+    const Shape line = deformed(
+      icosphere(1), [&](const Vector_3& p) -> Vector_3 { return origin + p.x() * direction; });
     RCO_CHECK_THROWS(surface_of(line), RCO::Invalid_input, "zero area");
   }
   // squares of areas would leave the range of double
   for(const double scale : {1e-200, 1e-100, 1e100, 1e200})
-  {
-    Shape shape = icosphere(1);
-    for(Vector_3& p : shape.points)
-      p *= scale;
-    RCO_CHECK_THROWS(surface_of(shape), RCO::Invalid_input, "reference: ");
-  }
+    RCO_CHECK_THROWS(surface_of(scaled(icosphere(1), scale)), RCO::Invalid_input, "reference: ");
   // some faces without area do no harm
-  Shape shape = icosphere(2);
-  shape.points[20] = shape.points[indexed(shape).target(
-    indexed(shape).vertex_corners[indexed(shape).vertex_begin[20]])];
+  const Shape shape = collapsed(icosphere(2), {20});
   test_closest(shape, "a sphere with faces of no area");
   const internal::Reference_surface surface = surface_of(shape);
   for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
@@ -456,7 +442,7 @@ void test_progress()
 void test_face_in_direction(const std::string& name, const Shape& shape)
 {
   const Scope scope("face towards, " + name);
-  const internal::Reference_surface reference(copy_of(shape));
+  const internal::Reference_surface reference = surface_of(shape);
   const Indexed_mesh& mesh = reference.mesh();
   Random random(5);
   const auto check_from = [&](const internal::Surface_point& from, const std::set<int>& around) {
@@ -524,12 +510,10 @@ void test_lines()
   RCO_CHECK_NEAR((lines.position(p) - Vector_3(0.25, 0, 0)).norm(), 0, 1e-14);
 }
 
-Shape noisy(Shape s, double amount)
+Shape noisy(const Shape& s, double amount)
 {
   Random random(6);
-  for(Vector_3& p : s.points)
-    p += random.in_cube(amount);
-  return s;
+  return deformed(s, [&](const Vector_3& p) -> Vector_3 { return p + random.in_cube(amount); });
 }
 
 std::pair<RCO::Feature_report, Mesh::Property_map<Mesh::Edge_index, bool>> detected(Mesh& mesh)
@@ -581,11 +565,10 @@ void test_detection()
 // a roof whose ridge turns by 100 degrees at one end and not at all at the other
 Shape fading_roof(int columns, int rows)
 {
-  Shape roof = plane_grid(columns, 2 * rows);
-  for(Vector_3& p : roof.points)
-    p = Vector_3(6 * p.x(), 2 * p.y() - 1,
-                 -std::abs(2 * p.y() - 1) * std::tan(50 * (1 - p.x()) * pi / 180));
-  return roof;
+  return deformed(plane_grid(columns, 2 * rows), [](const Vector_3& p) {
+    return Vector_3(6 * p.x(), 2 * p.y() - 1,
+                    -std::abs(2 * p.y() - 1) * std::tan(50 * (1 - p.x()) * pi / 180));
+  });
 }
 
 // A line that is sharp where it begins is followed to where it is hardly bent, and nothing else is taken.
@@ -621,10 +604,11 @@ void test_noisy_parts()
 // Nowhere more than the default, nor than a part of what is there, and no jumps.
 void test_local_bounds()
 {
-  Shape shape = plane_grid(30, 30);
-  for(Vector_3& p : shape.points) // finer and finer towards a corner
-    p = Vector_3(std::pow(p.x(), 3), std::pow(p.y(), 3), 0);
-  const RCO::internal::Reference_surface surface(copy_of(shape));
+  // finer and finer towards a corner
+  const Shape shape = deformed(plane_grid(30, 30), [](const Vector_3& p) {
+    return Vector_3(std::pow(p.x(), 3), std::pow(p.y(), 3), 0);
+  });
+  const internal::Reference_surface surface = surface_of(shape);
   const double bound = 0.25 * surface.mean_edge_length();
   const Indexed_mesh& mesh = surface.mesh();
   for(const bool mechanical : {false, true})
@@ -660,10 +644,10 @@ int main()
   run_test("is_reachable", test_is_reachable);
   run_test("bad references", test_bad_references);
   run_test("progress in a wedge", test_progress);
-  Shape bumps = plane_grid(9, 7);
   Random random(8);
-  for(Vector_3& p : bumps.points)
-    p += random.in_cube(0.03) + random(-0.1, 0.1) * Vector_3::UnitZ();
+  const Shape bumps = deformed(plane_grid(9, 7), [&](const Vector_3& p) -> Vector_3 {
+    return p + random.in_cube(0.03) + random(-0.1, 0.1) * Vector_3::UnitZ();
+  });
   test_face_in_direction("bumps with a border", bumps);
   test_face_in_direction("torus",
                          scrambled(torus(14, 7), 0.3, 9, [](const Vector_3& p) { return p; }));

@@ -5,30 +5,22 @@
 // The stages of a run: restarts, clusters of vertices, the finishing stage as a whole, and its statistics.
 
 #include "Located_shape.h"
-#include "checks.h"
 #include "deformations.h"
-#include "meshes.h"
-
-#include <CGAL/reference_constrained_optimize.h>
-
-#include <CGAL/Reference_constrained_optimization/quality_measures.h>
-
-#ifdef CGAL_LINKED_WITH_TBB
-#include <tbb/global_control.h>
-#endif
+#include "optimization.h"
 
 using namespace rco_test;
 
-template <typename Tag>
+template <typename Tag = CGAL::Sequential_tag>
 std::pair<Shape, RCO::Result>
 optimized(const Shape& start, const Shape& regular, bool finishes, unsigned int seed = 0)
 {
   Mesh mesh = mesh_of(start);
+  const Shape before = make_shape(mesh);
   const Mesh reference = mesh_of(regular);
   const RCO::Result r =
     improve_angles<Tag>(mesh, reference, params::use_finishing_stage(finishes).random_seed(seed));
-  RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, 0u);
-  RCO_CHECK(RCO::distance_to_reference(mesh, reference).is_on_reference());
+  check_result(before, mesh, reference, r);
+  RCO_CHECK_EQUAL(defects_after(r), 0u);
   RCO_CHECK_LESS(r.final_energy, r.initial_energy);
   return {make_shape(mesh), r};
 }
@@ -37,8 +29,8 @@ optimized(const Shape& start, const Shape& regular, bool finishes, unsigned int 
 void test_finishing(const std::string& name, const Shape& start, const Shape& regular, double gain)
 {
   const Scope scope("finishing stage, " + name);
-  const auto without = optimized<CGAL::Sequential_tag>(start, regular, false);
-  const auto with = optimized<CGAL::Sequential_tag>(start, regular, true);
+  const auto without = optimized(start, regular, false);
+  const auto with = optimized(start, regular, true);
   const double before = smallest_angle(without.first), after = smallest_angle(with.first);
   RCO_CHECK_LESS_EQUAL(before + gain, after);
   // the others do not pay for it
@@ -46,25 +38,15 @@ void test_finishing(const std::string& name, const Shape& start, const Shape& re
   std::cout << name << ": smallest angle " << smallest_angle(start) << " -> " << before << " -> "
             << after << std::endl;
 
-  const Indexed_mesh mesh = indexed(start);
-  for(std::size_t v = 0; v < start.points.size(); ++v)
-    if(mesh.is_border_vertex[v])
-      RCO_CHECK(same_bits(start.points[v], with.first.points[v]));
-
-  RCO_CHECK(same_bits(with.first, optimized<CGAL::Sequential_tag>(start, regular, true).first));
-  const auto other = optimized<CGAL::Sequential_tag>(start, regular, true, 1);
+  RCO_CHECK(same_bits(with.first, optimized(start, regular, true).first));
+  const auto other = optimized(start, regular, true, 1);
   RCO_CHECK_LESS_EQUAL(before, smallest_angle(other.first) + 2);
-#ifdef CGAL_LINKED_WITH_TBB
-  for(const int threads : {1, 2, 8})
-  {
-    const Scope s(std::to_string(threads) + " threads");
-    tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    const auto parallel = optimized<CGAL::Parallel_tag>(start, regular, true);
+  with_threads([&](auto tag) {
+    const auto parallel = optimized<decltype(tag)>(start, regular, true);
     RCO_CHECK(same_bits(with.first, parallel.first));
     RCO_CHECK_EQUAL(with.second.final_energy, parallel.second.final_energy);
     RCO_CHECK_EQUAL(with.second.number_of_patches, parallel.second.number_of_patches);
-  }
-#endif
+  });
 }
 
 // the largest patch and the energy of each iteration
@@ -155,13 +137,10 @@ void test_clusters(double size)
   RCO_CHECK_LESS(2 * held, sharp(start));
   for(const unsigned int seed : {0, 1, 2, 3})
   {
-    const auto result = optimized<CGAL::Sequential_tag>(start, start, true, seed);
+    const auto result = optimized(start, start, true, seed);
     RCO_CHECK_LESS_EQUAL(sharp(result.first), held);
     RCO_CHECK_LESS(mean_smallest_angle(start), mean_smallest_angle(result.first));
     RCO_CHECK_LESS_EQUAL(smallest_angle(start), smallest_angle(result.first));
-    for(std::size_t v = 0; v < start.points.size(); ++v)
-      if(grid.is_border_vertex[v])
-        RCO_CHECK(same_bits(start.points[v], result.first.points[v]));
     std::cout << "clusters of " << size << ": faces below 10 degrees " << sharp(start) << " -> "
               << sharp(result.first) << ", of which stay " << held << "; mean "
               << mean_smallest_angle(start) << " -> " << mean_smallest_angle(result.first)
@@ -228,11 +207,9 @@ int main()
   test_finishing("torus", scrambled(ring, 0.3, 10, onto_torus(1, 0.4)), ring, 0.5);
   test_finishing("sphere", scrambled(ball, 0.3, 11, onto_sphere), ball, 0);
   test_finishing("square", scrambled(square, 0.3, 12, onto_plane), square, 0);
-#ifdef RCO_DATA_DIR
-  const Shape blobby = read_off(std::string(RCO_DATA_DIR) + "/blobby.off");
+  const Shape blobby = read_data("blobby.off");
   if(!blobby.faces.empty())
     test_finishing("blobby", blobby, blobby, 2);
-#endif
   run_test("statistics", test_statistics);
   return report();
 }
