@@ -2,8 +2,6 @@
 
 // Calls the library with the settings that the drivers have in common.
 
-#include "Monotonicity_visitor.h"
-#include "meshes.h"
 #include "paper_pipeline.h"
 #include "settings.h"
 

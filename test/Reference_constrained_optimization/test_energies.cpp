@@ -8,13 +8,6 @@
 #include "deformations.h"
 #include "optimization.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 using namespace rco_test;
 
 // optimizes a mesh on itself as reference, and checks properties that hold for every energy

@@ -10,14 +10,7 @@
 
 #include <CGAL/Polyhedron_3.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 using namespace rco_test;
 

@@ -125,8 +125,9 @@ void check_state(const Mesh& mesh, const Mesh& reference, const Scene& scene)
 }
 
 template <typename Tag>
-void test_stops(const Scene& scene)
+void test_stops(const std::string& name, const Scene& scene)
 {
+  const Scope stops(name);
   const bool is_sequential = std::is_same<Tag, CGAL::Sequential_tag>::value;
   const Mesh reference = mesh_of(scene.reference);
   Visitor all;
@@ -219,24 +220,15 @@ void test_states()
                                          params::number_of_iterations(0));
     scene.start = make_shape(mesh);
   };
-  {
-    const Scope scope("triangles");
-    project();
-    test_stops<Tag>(scene);
-  }
-  {
-    const Scope scope("flattened patches alone");
-    scene.on_surface = false;
-    test_stops<Tag>(scene);
-    scene.on_surface = true;
-  }
-  {
-    const Scope scope("quads with a border");
-    scene.start = scrambled(plane_grid(20, 20, 1, true), 0.3, 2, onto_plane);
-    scene.reference = plane_grid(20, 20, 1, true);
-    scene.has_quads = true;
-    test_stops<Tag>(scene);
-  }
+  project();
+  test_stops<Tag>("triangles", scene);
+  scene.on_surface = false;
+  test_stops<Tag>("flattened patches alone", scene);
+  scene.on_surface = true;
+  scene.start = scrambled(plane_grid(20, 20, 1, true), 0.3, 2, onto_plane);
+  scene.reference = plane_grid(20, 20, 1, true);
+  scene.has_quads = true;
+  test_stops<Tag>("quads with a border", scene);
 }
 
 // the visitor is asked often also on a large mesh, and the clock is looked at as often
@@ -290,19 +282,18 @@ void test_latency()
   }
 }
 
+template <typename Tag>
+void test_all()
+{
+  test_states<Tag>();
+  test_latency<Tag>();
+}
+
 int main()
 {
-  {
-    const Scope scope("sequential");
-    test_states<CGAL::Sequential_tag>();
-    test_latency<CGAL::Sequential_tag>();
-  }
+  run_test("sequential", test_all<CGAL::Sequential_tag>);
 #ifdef CGAL_LINKED_WITH_TBB
-  {
-    const Scope scope("parallel");
-    test_states<CGAL::Parallel_tag>();
-    test_latency<CGAL::Parallel_tag>();
-  }
+  run_test("parallel", test_all<CGAL::Parallel_tag>);
 #endif
   return report();
 }

@@ -13,11 +13,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 
-#include <cmath>
-#include <cstddef>
-#include <string>
 #include <tuple>
-#include <vector>
 
 using namespace rco_test;
 

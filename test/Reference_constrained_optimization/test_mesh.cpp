@@ -15,9 +15,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 
-#include <algorithm>
 #include <limits>
-#include <vector>
 
 using namespace rco_test;
 

@@ -11,7 +11,6 @@
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_tree.h>
 
-#include <functional>
 #include <limits>
 #include <set>
 

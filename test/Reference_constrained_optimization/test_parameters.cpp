@@ -9,7 +9,6 @@
 
 #include <CGAL/Polyhedron_3.h>
 
-#include <array>
 #include <limits>
 
 namespace tags = CGAL::Reference_constrained_optimization::internal_np;

@@ -10,10 +10,7 @@
 
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
-#include <algorithm>
-#include <cmath>
 #include <ctime>
-#include <functional>
 
 using namespace rco_test;
 

@@ -15,9 +15,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/sliding.h>
 
-#include <cmath>
-#include <vector>
-
 using namespace rco_test;
 
 // Every vertex is where R is closest; what is there already, or may not move, keeps its bits.

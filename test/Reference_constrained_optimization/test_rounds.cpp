@@ -16,7 +16,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 
 #include <chrono>
-#include <string>
 
 using namespace rco_test;
 

@@ -12,7 +12,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_rounds.h>
 
-#include <map>
 #include <numeric>
 #include <set>
 
@@ -306,6 +305,15 @@ std::set<int> touched_by_definition(const Indexed_mesh& mesh, const std::vector<
   return result;
 }
 
+internal::Selection_parameters selection_parameters(double threshold, int cap, int exempt)
+{
+  internal::Selection_parameters parameters;
+  parameters.developability_threshold = threshold;
+  parameters.maximum_patch_size = cap;
+  parameters.exempt_size = exempt;
+  return parameters;
+}
+
 const auto nothing_taken = [](int) { return false; };
 
 // What holds for every patch, on any mesh. Returns the size of the largest.
@@ -320,10 +328,7 @@ std::size_t test_growing(const Shape& shape, const std::string& name)
     for(const int cap : {1, 3, 40, 100000})
       for(const int exempt : {1, 70})
       {
-        internal::Selection_parameters parameters;
-        parameters.developability_threshold = threshold;
-        parameters.maximum_patch_size = cap;
-        parameters.exempt_size = exempt;
+        const auto parameters = selection_parameters(threshold, cap, exempt);
         internal::Patch_selection selection(mesh, parameters);
         Random random(3);
         for(int trial = 0; trial < (std::min)(n, 12); ++trial)
@@ -450,15 +455,11 @@ void test_touched()
 
 void test_threshold()
 {
-  internal::Selection_parameters parameters;
-  parameters.maximum_patch_size = 1000;
-  parameters.exempt_size = 0;
-  parameters.developability_threshold = 0.01;
   // on a cube a patch that starts on flat ground stays on its side
   const Shape box = cube(6);
   const Indexed_mesh box_mesh = indexed(box);
   const internal::Face_geometry box_geometry = geometry_of(box, box_mesh);
-  internal::Patch_selection on_box(box_mesh, parameters);
+  internal::Patch_selection on_box(box_mesh, selection_parameters(0.01, 1000, 0));
   for(int seed = 0; seed < box_mesh.number_of_faces(); ++seed)
   {
     const std::vector<int> patch = on_box.grow(seed, box_geometry, nothing_taken);
@@ -486,10 +487,7 @@ void test_threshold()
   for(const int exempt : {0, 20})
     for(const double threshold : {1e-4, 1e-3, 1e-2})
     {
-      parameters.exempt_size = exempt;
-      parameters.developability_threshold = threshold;
-      parameters.maximum_patch_size = 127;
-      internal::Patch_selection selection(mesh, parameters);
+      internal::Patch_selection selection(mesh, selection_parameters(threshold, 127, exempt));
       for(int trial = 0; trial < 10; ++trial)
       {
         const int seed = random.index(mesh.number_of_faces());
@@ -519,11 +517,7 @@ void test_threshold()
   const auto mean_size = [&](const Shape& s, double threshold, int exempt) {
     const Indexed_mesh m = indexed(s);
     const internal::Face_geometry g = geometry_of(s, m);
-    internal::Selection_parameters p;
-    p.maximum_patch_size = 100000;
-    p.exempt_size = exempt;
-    p.developability_threshold = threshold;
-    internal::Patch_selection selection(m, p);
+    internal::Patch_selection selection(m, selection_parameters(threshold, 100000, exempt));
     Random seeds(5);
     double sum = 0;
     for(int i = 0; i < 20; ++i)

@@ -11,9 +11,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/face_normal_deviation.h>
 
-#include <algorithm>
-#include <vector>
-
 using namespace rco_test;
 
 // a coarse sphere on a finer one

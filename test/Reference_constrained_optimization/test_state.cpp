@@ -13,9 +13,6 @@
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
 
-#include <algorithm>
-#include <vector>
-
 using namespace rco_test;
 
 // A patch is the given part of the mesh, in indices of its own.

@@ -16,47 +16,55 @@
 
 using namespace rco_test;
 
+typedef std::vector<internal::Located_vertex> Vertices;
+typedef internal::Defect_repair<CGAL::Sequential_tag> Sequential_defect_repair;
+
+const int n = 12;
+int id(int i, int j) { return j * (n + 1) + i; }
+
+// a mesh on a plane, all of whose vertices may be moved anywhere
+struct Movable_mesh : Located_shape
+{
+  Vertices start;
+
+  template <typename Energy = RCO::Minimum_angle_energy>
+  explicit Movable_mesh(const Shape& shape, const Energy& energy = Energy())
+    : Located_shape(shape, plane_grid(n, n, n), energy),
+      start(state.vertices)
+  {
+    state.is_free.assign(start.size(), 1);
+  }
+  void move(int v, double dx, double dy)
+  {
+    const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
+    state.vertices[v].on_reference = surface.closest(p);
+    state.vertices[v].position = p;
+  }
+  auto defects() const
+  {
+    return internal::find_output_defects<CGAL::Sequential_tag>(state, state.vertices);
+  }
+  bool is_at(int v, const Vertices& vertices) const
+  {
+    return same_bits(state.vertices[v].position, vertices[v].position) &&
+           same_bits(state.vertices[v].on_reference.barycentric,
+                     vertices[v].on_reference.barycentric);
+  }
+};
+
 // Defects at the end are repaired locally.
 void test_defect_repair()
 {
-  using namespace RCO::internal;
-  typedef Defect_repair<CGAL::Sequential_tag> Sequential_defect_repair;
-  typedef std::vector<Located_vertex> Vertices;
-  const int n = 12;
-  const auto id = [](int i, int j) { return j * (n + 1) + i; };
-  const auto with_state = [&](const auto& energy, const Shape& given, const auto& test) {
-    Located_shape scene(given, plane_grid(n, n, n), energy);
-    Optimization_state& state = scene.state;
-    state.is_free.assign(given.points.size(), 1);
-    const Vertices start = state.vertices;
-    const auto move = [&](int v, double dx, double dy) {
-      const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
-      state.vertices[v].on_reference = scene.surface.closest(p);
-      state.vertices[v].position = p;
-    };
-    const auto defects = [&]() {
-      return find_output_defects<CGAL::Sequential_tag>(state, state.vertices);
-    };
-    const auto is_at = [&](int v, const Vertices& vertices) {
-      return same_bits(state.vertices[v].position, vertices[v].position) &&
-             same_bits(state.vertices[v].on_reference.barycentric,
-                       vertices[v].on_reference.barycentric);
-    };
-    test(state, start, move, defects, is_at);
-  };
   const Shape triangles = plane_grid(n, n, n);
   {
     const Scope s("faces that are inverted");
-    with_state(RCO::Minimum_angle_energy(), triangles,
-               [&](Optimization_state& state, const Vertices& start, const auto& move,
-                   const auto& defects, const auto& is_at) {
-                 move(id(3, 3), 1.6, 0.1);
-                 Sequential_defect_repair repair(state, start);
-                 RCO_CHECK_LESS(0u, defects().number);
-                 repair.run();
-                 RCO_CHECK(repair.has_restored_vertices());
-                 RCO_CHECK(is_at(id(3, 3), start));
-               });
+    Movable_mesh mesh(triangles);
+    mesh.move(id(3, 3), 1.6, 0.1);
+    Sequential_defect_repair repair(mesh.state, mesh.start);
+    RCO_CHECK_LESS(0u, mesh.defects().number);
+    repair.run();
+    RCO_CHECK(repair.has_restored_vertices());
+    RCO_CHECK(mesh.is_at(id(3, 3), mesh.start));
   }
   // a face of the input with an angle far below that of the others leaves them free to move
   Shape thin = triangles;
@@ -64,86 +72,71 @@ void test_defect_repair()
   {
     // three columns have moved, one vertex too far: others would be inverted if it returned alone
     const Scope s("what is around");
-    with_state(RCO::Minimum_angle_energy(), thin,
-               [&](Optimization_state& state, const Vertices& start, const auto& move,
-                   const auto& defects, const auto& is_at) {
-                 for(int j = 4; j < 9; ++j)
-                   for(int i = 3; i < 6; ++i)
-                     move(id(i, j), i == 3 ? 1.7 : i == 4 ? 1.3 : 0.4, 0);
-                 RCO_CHECK_EQUAL(defects().number, 0u);
-                 move(id(4, 6), 0.2, 0);
-                 move(id(10, 10), 0.2, 0.1);
-                 const Vertices gained = state.vertices;
-                 RCO_CHECK_LESS(0u, defects().number);
-                 Sequential_defect_repair repair(state, start);
-                 repair.run();
-                 RCO_CHECK_EQUAL(defects().number, 0u);
-                 RCO_CHECK(is_at(id(3, 6), start));
-                 RCO_CHECK(is_at(id(10, 10), gained));
-               });
+    Movable_mesh mesh(thin);
+    for(int j = 4; j < 9; ++j)
+      for(int i = 3; i < 6; ++i)
+        mesh.move(id(i, j), i == 3 ? 1.7 : i == 4 ? 1.3 : 0.4, 0);
+    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
+    mesh.move(id(4, 6), 0.2, 0);
+    mesh.move(id(10, 10), 0.2, 0.1);
+    const Vertices gained = mesh.state.vertices;
+    RCO_CHECK_LESS(0u, mesh.defects().number);
+    Sequential_defect_repair repair(mesh.state, mesh.start);
+    repair.run();
+    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
+    RCO_CHECK(mesh.is_at(id(3, 6), mesh.start));
+    RCO_CHECK(mesh.is_at(id(10, 10), gained));
   }
   {
     const Scope s("an angle that is slightly smaller");
-    with_state(RCO::Minimum_angle_energy(), thin,
-               [&](Optimization_state& state, const Vertices& start, const auto& move,
-                   const auto& defects, const auto& is_at) {
-                 move(id(8, 8), 0.2, 0.1);
-                 const double smallest = defects().smallest_angle;
-                 move(id(1, 1), 1e-9, 0);
-                 RCO_CHECK_LESS(defects().smallest_angle, smallest);
-                 const Vertices gained = state.vertices;
-                 Sequential_defect_repair repair(state, start);
-                 repair.run();
-                 RCO_CHECK_EQUAL(defects().smallest_angle, smallest);
-                 RCO_CHECK(is_at(id(1, 1), start));
-                 RCO_CHECK(is_at(id(8, 8), gained));
-               });
+    Movable_mesh mesh(thin);
+    mesh.move(id(8, 8), 0.2, 0.1);
+    const double smallest = mesh.defects().smallest_angle;
+    mesh.move(id(1, 1), 1e-9, 0);
+    RCO_CHECK_LESS(mesh.defects().smallest_angle, smallest);
+    const Vertices gained = mesh.state.vertices;
+    Sequential_defect_repair repair(mesh.state, mesh.start);
+    repair.run();
+    RCO_CHECK_EQUAL(mesh.defects().smallest_angle, smallest);
+    RCO_CHECK(mesh.is_at(id(1, 1), mesh.start));
+    RCO_CHECK(mesh.is_at(id(8, 8), gained));
   }
   {
     const Scope s("a quad that is slightly non-convex");
-    with_state(RCO::Quad_angle_energy(), plane_grid(n, n, n, true),
-               [&](Optimization_state& state, const Vertices& start, const auto& move,
-                   const auto& defects, const auto& is_at) {
-                 move(id(3, 3), 0.5 + 1e-12, 0.5 + 1e-12);
-                 move(id(9, 9), 0.2, 0.1);
-                 RCO_CHECK_EQUAL(defects().number, 1u);
-                 const Vertices gained = state.vertices;
-                 Sequential_defect_repair repair(state, start);
-                 repair.run();
-                 RCO_CHECK(repair.has_restored_vertices());
-                 RCO_CHECK_EQUAL(defects().number, 0u);
-                 RCO_CHECK(is_at(id(3, 3), start));
-                 RCO_CHECK(is_at(id(9, 9), gained));
-               });
+    Movable_mesh mesh(plane_grid(n, n, n, true), RCO::Quad_angle_energy());
+    mesh.move(id(3, 3), 0.5 + 1e-12, 0.5 + 1e-12);
+    mesh.move(id(9, 9), 0.2, 0.1);
+    RCO_CHECK_EQUAL(mesh.defects().number, 1u);
+    const Vertices gained = mesh.state.vertices;
+    Sequential_defect_repair repair(mesh.state, mesh.start);
+    repair.run();
+    RCO_CHECK(repair.has_restored_vertices());
+    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
+    RCO_CHECK(mesh.is_at(id(3, 3), mesh.start));
+    RCO_CHECK(mesh.is_at(id(9, 9), gained));
   }
   {
     const Scope s("an energy that has risen");
-    with_state(RCO::Minimum_angle_energy(), thin,
-               [&](Optimization_state& state, const Vertices& start, const auto& move, const auto&,
-                   const auto& is_at) {
-                 move(id(9, 9), 0.1, 0);
-                 move(id(5, 4), 0.2, 0.1);
-                 const Vertices moved = state.vertices;
-                 Sequential_defect_repair repair(state, start);
-                 repair.run();
-                 RCO_CHECK(!repair.has_restored_vertices());
-                 const auto density = RCO::Minimum_angle_energy().density();
-                 RCO_CHECK(repair.enlarge(density));
-                 RCO_CHECK(is_at(id(5, 4), start) && is_at(id(9, 9), moved));
-                 while(repair.enlarge(density))
-                 {}
-                 RCO_CHECK(is_at(id(9, 9), start));
-               });
+    Movable_mesh mesh(thin);
+    mesh.move(id(9, 9), 0.1, 0);
+    mesh.move(id(5, 4), 0.2, 0.1);
+    const Vertices moved = mesh.state.vertices;
+    Sequential_defect_repair repair(mesh.state, mesh.start);
+    repair.run();
+    RCO_CHECK(!repair.has_restored_vertices());
+    const auto density = RCO::Minimum_angle_energy().density();
+    RCO_CHECK(repair.enlarge(density));
+    RCO_CHECK(mesh.is_at(id(5, 4), mesh.start) && mesh.is_at(id(9, 9), moved));
+    while(repair.enlarge(density))
+    {}
+    RCO_CHECK(mesh.is_at(id(9, 9), mesh.start));
   }
 }
 
 // Points that did not move keep their bits, others are those of the state in the user's coordinates.
 void test_points()
 {
-  const auto placed = [](Shape shape) {
-    return deformed(
-      shape, [](const Vector_3& p) -> Vector_3 { return 0.7 * p + Vector_3(1e5, 0.1, -3e4); });
-  };
+  const auto placed = [](const Shape& s) { return shifted(scaled(s, 0.7), {1e5, 0.1, -3e4}); };
   const Shape sphere = placed(icosphere(2)),
               start = placed(scrambled(icosphere(2), 0.2, 1, onto_sphere));
   Mesh mesh = mesh_of(start);

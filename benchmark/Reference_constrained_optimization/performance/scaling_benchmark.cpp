@@ -1,11 +1,8 @@
 // Optimizes a mesh, decimated or split into more triangles, with a number of threads, and prints a row of
 // figures. --help tells the rest.
 
-#include "../driver.h"
 #include "../library_call.h"
-#include "../meshes.h"
 #include "../result_columns.h"
-#include "../settings.h"
 #include "../shape.h"
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>

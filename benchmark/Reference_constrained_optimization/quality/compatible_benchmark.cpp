@@ -1,12 +1,7 @@
 // Lowers the distortion of a map between two surfaces and prints a row of figures. --help tells the rest.
 
-#include "../Monotonicity_visitor.h"
-#include "../driver.h"
-#include "../guarantees.h"
 #include "../library_call.h"
-#include "../meshes.h"
 #include "../result_columns.h"
-#include "../settings.h"
 #include "arap_baseline.h"
 
 #include <CGAL/Real_timer.h>
@@ -126,8 +121,9 @@ std::string violated_guarantees(const Pair& pair,
 {
   const Mesh& input = pair.start;
   Violated_guarantees broken;
-  broken.check_run(input, output, pair.reference, defects, monotonicity_violations,
-                   [&](Mesh::Vertex_index v) { return !input.is_border(v); });
+  const auto is_free = [&](Mesh::Vertex_index v) { return !input.is_border(v); };
+  broken.check_run(input, output, pair.reference, defects, monotonicity_violations, is_free,
+                   is_free);
   broken.add_if(output.number_of_vertices() != pair.source.number_of_vertices() ||
                   faces_of(output) != faces_of(pair.source),
                 "connectivity differs from that of Q");

@@ -1,12 +1,7 @@
 // Optimizes a quad mesh and prints a row of figures. --help tells the rest.
 
-#include "../Monotonicity_visitor.h"
-#include "../driver.h"
-#include "../guarantees.h"
 #include "../library_call.h"
-#include "../meshes.h"
 #include "../result_columns.h"
-#include "../settings.h"
 #include "subdivided.h"
 
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
@@ -129,7 +124,7 @@ std::string violated_guarantees(const Mesh& input,
   };
   Violated_guarantees broken;
   broken.check_run(input, output, reference, {in.defects, out.defects}, monotonicity_violations,
-                   is_free);
+                   is_free, is_free);
   broken.add_if(out.nonconvex_quads > in.nonconvex_quads, "non-convex quads rose");
   return broken.text();
 }

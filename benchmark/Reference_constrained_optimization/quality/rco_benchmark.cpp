@@ -1,12 +1,7 @@
 // Optimizes a mesh against its own shape and prints a row of figures. --help tells the rest.
 
-#include "../Monotonicity_visitor.h"
-#include "../driver.h"
-#include "../guarantees.h"
 #include "../library_call.h"
-#include "../meshes.h"
 #include "../result_columns.h"
-#include "../settings.h"
 
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Real_timer.h>
@@ -79,8 +74,8 @@ std::string violated_guarantees(const Mesh& input,
   const Defects_in_and_out defects = {RCO::orientation_defects(input, reference),
                                       RCO::orientation_defects(output, reference)};
   Violated_guarantees broken;
-  broken.check_run(input, output, reference, defects, monotonicity_violations,
-                   [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); });
+  const auto is_free = [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); };
+  broken.check_run(input, output, reference, defects, monotonicity_violations, is_free, is_free);
   broken.add_if(RCO::angle_statistics(output).minimum < RCO::angle_statistics(input).minimum,
                 "minimum angle fell");
   return broken.text();

@@ -1,7 +1,5 @@
 // Runs the package or one of its peers on a mesh and prints a row of figures. --help tells the rest.
 
-#include "../driver.h"
-#include "../meshes.h"
 #include "../result_columns.h"
 #include "peers.h"
 

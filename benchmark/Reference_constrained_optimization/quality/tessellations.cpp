@@ -20,9 +20,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -144,17 +142,17 @@ Mesh sliver(Mesh mesh, const Shape& shape, CGAL::Random& random)
   return mesh;
 }
 
-void write(const Mesh& mesh, const Mesh& original, const std::string& path)
+void write_and_tell(const Mesh& mesh,
+                    const Mesh& original,
+                    const std::string& folder,
+                    const std::string& name)
 {
-  std::ofstream out(path);
-  out.precision(17);
-  if(!out || !CGAL::IO::write_OFF(out, mesh))
-    throw std::runtime_error("cannot write " + path);
+  write(mesh, folder, name);
   const RCO::Angle_statistics a = RCO::angle_statistics(mesh);
   const RCO::Orientation_defects d = RCO::orientation_defects(mesh, original);
   std::printf("%s: %d vertices, %d faces, smallest angles %.2f / %.2f / %.2f (min / mean / std), "
               "%d below 10 degrees, drift %.2f mean edges, %d flips, %d fold edges\n",
-              path.c_str(), int(mesh.number_of_vertices()), int(mesh.number_of_faces()), a.minimum,
+              name.c_str(), int(mesh.number_of_vertices()), int(mesh.number_of_faces()), a.minimum,
               a.mean, a.standard_deviation, int(a.number_below_10),
               RCO::drift(mesh, original).relative_maximum(), int(d.number_of_flips),
               int(d.number_of_fold_edges));
@@ -167,15 +165,15 @@ int main(int argc, char* argv[])
   try
   {
     const Mesh mesh = read(file);
-    const std::string base = folder + "/" + base_name(file);
+    const std::string base = base_name(file);
     const Shape shape(mesh);
     CGAL::Random random(0);
     const double length = mean_edge_length(mesh);
-    write(isotropic(mesh, shape, length), mesh, base + "_isotropic.off");
+    write_and_tell(isotropic(mesh, shape, length), mesh, folder, base + "_isotropic");
     // edges are split afterwards: longer ones to start from give about the same number of vertices
     const Mesh coarse = isotropic(mesh, shape, 1.1 * length);
-    write(scan(coarse, shape, random), mesh, base + "_scan.off");
-    write(sliver(coarse, shape, random), mesh, base + "_sliver.off");
+    write_and_tell(scan(coarse, shape, random), mesh, folder, base + "_scan");
+    write_and_tell(sliver(coarse, shape, random), mesh, folder, base + "_sliver");
   }
   catch(const std::exception& e)
   {

@@ -2,9 +2,7 @@
 
 // One call of the package, with all of its guarantees checked.
 
-#include "../Monotonicity_visitor.h"
 #include "../guarantees.h"
-#include "../meshes.h"
 #include "Locations.h"
 #include "outcome.h"
 

@@ -2,10 +2,6 @@
 // guarantees are verified. With RCO_FUZZ_VERBOSE in the environment an input and its outcome are printed,
 // to reproduce a failure.
 
-#include "../Monotonicity_visitor.h"
-#include "../guarantees.h"
-#include "../meshes.h"
-#include "Locations.h"
 #include "checked_run.h"
 #include "fuzz_input.h"
 
