@@ -77,6 +77,12 @@ struct Located_shape
     return patch([](const Vector_3&) { return true; });
   }
 
+  template <typename Density>
+  internal::Global_measure measure(const Density& density) const
+  {
+    return internal::measure<CGAL::Sequential_tag>(state, density, 1e300);
+  }
+
   // the positions of a patch' vertices are those of a mover's proposal
   template <typename Mover>
   bool move(const internal::Patch& patch, const Mover& mover, double fraction = 1)

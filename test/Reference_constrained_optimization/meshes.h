@@ -18,10 +18,8 @@
 
 #include <boost/graph/graph_traits.hpp>
 
-#include <fstream>
 #include <iostream>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -80,45 +78,13 @@ Shape make_shape(const Mesh& mesh)
   return shape;
 }
 
-// reads an OFF file; an empty shape if there is none
-inline Shape read_off(const std::string& name)
-{
-  Shape shape;
-  std::ifstream file(name);
-  std::string line, all;
-  while(std::getline(file, line))
-    all += line.substr(0, line.find('#')) + "\n";
-  std::istringstream in(all);
-  std::string magic;
-  int number_of_vertices = 0, number_of_faces = 0, number_of_edges = 0;
-  if(!(in >> magic >> number_of_vertices >> number_of_faces >> number_of_edges) || magic != "OFF")
-    return shape;
-  for(int v = 0; v < number_of_vertices; ++v)
-  {
-    double x = 0, y = 0, z = 0;
-    in >> x >> y >> z;
-    shape.add(x, y, z);
-  }
-  for(int f = 0; f < number_of_faces; ++f)
-  {
-    int degree = 0;
-    in >> degree;
-    std::vector<int> corners(degree);
-    for(int& v : corners)
-      in >> v;
-    std::getline(in, line); // colours
-    shape.faces.push_back(corners);
-  }
-  return in ? shape : Shape();
-}
-
 // one of CGAL's meshes; where it is not installed, an empty shape, and it is told that it is skipped
 inline Shape read_data(const std::string& name)
 {
-  const Shape shape = read_off(std::string(RCO_DATA_DIR) + "/" + name);
-  if(shape.faces.empty())
+  Mesh mesh;
+  if(!CGAL::IO::read_OFF(std::string(RCO_DATA_DIR) + "/" + name, mesh))
     std::cout << name << " was not found, skipped" << std::endl;
-  return shape;
+  return make_shape(mesh);
 }
 
 } // namespace rco_test

@@ -4,7 +4,6 @@
 
 // Flattening of patches, the checks on it, location in the plane, and mapping back.
 
-#include "checks.h"
 #include "surfaces.h"
 
 #include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>

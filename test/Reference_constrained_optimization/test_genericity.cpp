@@ -29,10 +29,9 @@ void test_model(const std::string& name, double unit_in_last_place)
 {
   const Scope scope(name);
   const Shape regular = torus(24, 12), rough = scrambled(regular, 0.3, 4, onto_torus(1, 0.4));
-  Mesh expected = mesh_of(rough);
   // the number type rounds what goes in: compare with what the mesh holds
   M mesh = make_mesh<M>(rough), reference = make_mesh<M>(regular);
-  expected = mesh_of(make_shape(mesh));
+  Mesh expected = mesh_of(make_shape(mesh));
   const Mesh expected_reference = mesh_of(make_shape(reference));
   const RCO::Result r = improve_angles(mesh, reference);
   const RCO::Result e = improve_angles(expected, expected_reference);

@@ -89,7 +89,7 @@ void test_random_steps(bool has_short_steps)
   {
     Random random(trial);
     Scene scene(scrambled(sphere, 0.35, 10 + trial, onto_sphere), sphere);
-    const auto before = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
+    const auto before = scene.measure(density);
     internal::Step_limits limits;
     limits.density = before.largest_density;
     limits.cosine = before.largest_cosine;
@@ -114,7 +114,7 @@ void test_random_steps(bool has_short_steps)
                              Short_steps::limit);
       scene.state.vertices[scene.patch.vertices[v]] = now;
     }
-    const auto after = internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
+    const auto after = scene.measure(density);
     RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
     RCO_CHECK(after.defects() < before.defects() || after.energy < before.energy);
     RCO_CHECK_LESS_EQUAL(after.largest_density, before.largest_density);
@@ -152,21 +152,17 @@ void test_inversion()
   RCO_CHECK_LESS(backtracking.steps()[moved], none.steps()[moved]);
   for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
     scene.state.vertices[scene.patch.vertices[v]] = none.candidate()[v];
-  RCO_CHECK_LESS(0u, internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300).flips);
+  RCO_CHECK_LESS(0u, scene.measure(density).flips);
 }
 
 int main()
 {
-  {
-    Scope scope("the invariants of the package");
-    test_random_steps<internal::Backtracking>(false);
-  }
-  {
-    Scope scope("one more");
-    Short_steps::limit = 0.02;
-    typedef decltype(std::tuple_cat(internal::Local_invariants(), std::tuple<Short_steps>())) Local;
-    test_random_steps<internal::Backtracking_with<Local, internal::Sum_invariants>>(true);
-  }
+  run_test("the invariants of the package",
+           [] { test_random_steps<internal::Backtracking>(false); });
+  Short_steps::limit = 0.02;
+  typedef decltype(std::tuple_cat(internal::Local_invariants(), std::tuple<Short_steps>())) Local;
+  typedef internal::Backtracking_with<Local, internal::Sum_invariants> One_more;
+  run_test("one more", [] { test_random_steps<One_more>(true); });
   run_test("inversion", test_inversion);
   return report();
 }

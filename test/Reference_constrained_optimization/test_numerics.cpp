@@ -23,6 +23,15 @@ using namespace rco_test;
 typedef Eigen::Matrix4d Matrix_4;
 typedef Eigen::Vector4d Vector_4;
 
+template <typename Matrix>
+Matrix filled(int rows, int columns, Random& random)
+{
+  Matrix m(rows, columns);
+  for(int i = 0; i < rows * columns; ++i)
+    m.data()[i] = random(-1, 1);
+  return m;
+}
+
 Vector_4 as_vector(const Matrix_2& m) { return Eigen::Map<const Vector_4>(m.data()); }
 
 void test_time_of_collapse()
@@ -115,9 +124,7 @@ random_matrix(int n, const Pairs& pairs, double smallest, Random& random, intern
     const int a = pairs[k][0], b = pairs[k][1];
     if(a < 0 || b < 0)
       continue;
-    Eigen::Matrix4d root;
-    for(int i = 0; i < 16; ++i)
-      root.data()[i] = random(-1, 1);
+    const Eigen::Matrix4d root = filled<Eigen::Matrix4d>(4, 4, random);
     const Eigen::Matrix4d h = root * root.transpose();
     const Matrix_2 side = h.topRightCorner<2, 2>(), turned = side.transpose();
     add_diagonal(a, h.topLeftCorner<2, 2>());
@@ -149,9 +156,8 @@ void test_factorization_of(const std::string& name,
   {
     const Eigen::SparseMatrix<double> matrix = random_matrix(n, pairs, 0.1, random, factorization);
     RCO_CHECK_NEAR(factorization.trace(), matrix.diagonal().sum(), 1e-12 * factorization.trace());
-    Eigen::VectorXd right(2 * n), solution, again;
-    for(int i = 0; i < 2 * n; ++i)
-      right(i) = random(-1, 1);
+    const Eigen::VectorXd right = filled<Eigen::VectorXd>(2 * n, 1, random);
+    Eigen::VectorXd solution, again;
     for(const double shift : {0., 2.})
     {
       const Eigen::SparseMatrix<double> shifted = matrix + shift * identity;
@@ -261,10 +267,8 @@ void test_newton_system()
       Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(2 * n, 2 * n);
       for(std::size_t e = 0; e < triples.size(); ++e)
       {
-        Eigen::Matrix<double, 6, 6> root;
-        for(int i = 0; i < 36; ++i)
-          root.data()[i] = random(-1, 1);
-        const Eigen::Matrix<double, 6, 6> h = root * root.transpose();
+        const Eigen::MatrixXd root = filled<Eigen::MatrixXd>(6, 6, random);
+        const Eigen::MatrixXd h = root * root.transpose();
         for(int i = 0; i < 3; ++i)
         {
           const int j = (i + 1) % 3, a = variable[triples[e][i]], b = variable[triples[e][j]];
@@ -280,9 +284,8 @@ void test_newton_system()
           dense.block<2, 2>(2 * b, 2 * a) += side.transpose();
         }
       }
-      Eigen::VectorXd right(2 * n), solution;
-      for(int i = 0; i < 2 * n; ++i)
-        right(i) = random(-1, 1);
+      const Eigen::VectorXd right = filled<Eigen::VectorXd>(2 * n, 1, random);
+      Eigen::VectorXd solution;
       RCO_CHECK(system.solve(right, solution));
       const Eigen::VectorXd expected = dense.fullPivLu().solve(right);
       RCO_CHECK_LESS_EQUAL((solution - expected).norm(), 1e-5 * expected.norm());
@@ -346,15 +349,16 @@ void test_known_optimum(const Density& density, double best, const Matrix_2& map
   const Shape regular = equilateral_grid(9, 8);
   const Shape start = scrambled(regular, 0.35, 6, onto_plane);
   internal::Planar_problem problem = planar_problem(regular, 1);
-  std::vector<Vector_2> u = planar_points(start), goal = planar_points(regular);
-  for(Vector_2& p : u)
-    p = map * p;
-  for(Vector_2& p : goal)
-    p = map * p;
+  const auto mapped = [&](std::vector<Vector_2> points) {
+    for(Vector_2& p : points)
+      p = map * p;
+    return points;
+  };
+  const std::vector<Vector_2> before = mapped(planar_points(start)),
+                              goal = mapped(planar_points(regular));
+  std::vector<Vector_2> u = before;
   for(Matrix_2& m : problem.metric)
     m = map.inverse();
-
-  const std::vector<Vector_2> before = u;
   internal::Projected_newton optimizer;
   optimizer.analyze(problem);
   double energy = energy_of(problem, density, u);

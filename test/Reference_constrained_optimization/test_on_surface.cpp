@@ -5,7 +5,6 @@
 // Movers on the surface: Newton's method in tangent planes, the pattern search, and clusters of vertices.
 
 #include "Located_shape.h"
-#include "checks.h"
 #include "meshes.h"
 #include "surfaces.h"
 
@@ -212,10 +211,7 @@ void test_pattern_search()
       shape_bound.initialize<CGAL::Sequential_tag>(scene.state, 0.02, true,
                                                    internal::Drift_barrier(1));
     const internal::Patch_samples samples = shape_bound.gather(scene.state, patch);
-    const auto measure = [&]() {
-      return internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
-    };
-    const internal::Global_measure before = measure();
+    const internal::Global_measure before = scene.measure(density);
     internal::Pattern_search_mover mover(scene.surface);
     // without thresholds nothing is bad
     RCO_CHECK(!mover.propose(patch, samples, density));
@@ -227,7 +223,7 @@ void test_pattern_search()
     RCO_CHECK_LESS(10u, moved);
     RCO_CHECK_LESS(moved, patch.vertices.size());
     RCO_CHECK(scene.move(patch, mover));
-    const internal::Global_measure after = measure();
+    const internal::Global_measure after = scene.measure(density);
     RCO_CHECK_LESS(after.energy, 0.8 * before.energy);
     RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
     RCO_CHECK_LESS(after.largest_cosine, before.largest_cosine);

@@ -128,19 +128,16 @@ void test_calls()
   RCO_CHECK_LESS(plain.final_energy, plain.initial_energy);
 
   // the default, said aloud; a single name of CGAL's; for the reference, too
-  mesh = start;
-  CGAL::reference_constrained_optimize(mesh, reference, energy, params::default_values());
-  RCO_CHECK(same(mesh));
-  mesh = start;
-  CGAL::reference_constrained_optimize(mesh, reference, energy, params::random_seed(0),
-                                       params::default_values());
-  RCO_CHECK(same(mesh));
-  mesh = start;
-  CGAL::reference_constrained_optimize<CGAL::Sequential_tag>(
-    mesh, reference, energy,
+  const auto gives_the_same = [&](const auto&... np) {
+    mesh = start;
+    CGAL::reference_constrained_optimize<CGAL::Sequential_tag>(mesh, reference, energy, np...);
+    return same(mesh);
+  };
+  RCO_CHECK(gives_the_same(params::default_values()));
+  RCO_CHECK(gives_the_same(params::random_seed(0), params::default_values()));
+  RCO_CHECK(gives_the_same(
     params::developability_threshold(0.25).geom_traits(Kernel()).number_of_iterations(30),
-    params::vertex_point_map(get(CGAL::vertex_point, reference)));
-  RCO_CHECK(same(mesh));
+    params::vertex_point_map(get(CGAL::vertex_point, reference))));
 
   // points kept elsewhere: those of the mesh itself neither matter nor change
   mesh = start;
@@ -164,9 +161,7 @@ void test_calls()
   RCO_CHECK(same(mesh));
 
   // a visitor by value and by reference, small patches, few iterations
-  mesh = start;
-  CGAL::reference_constrained_optimize(mesh, reference, energy, params::visitor(Patch_sizes()));
-  RCO_CHECK(same(mesh));
+  RCO_CHECK(gives_the_same(params::visitor(Patch_sizes())));
   Patch_sizes sizes;
   mesh = start;
   const RCO::Result small = CGAL::reference_constrained_optimize(

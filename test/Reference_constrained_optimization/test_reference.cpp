@@ -5,7 +5,6 @@
 // The reference: closest points in a triangle, globally, and locally on the same sheet; faces in a direction,
 // lines, features, and local bounds.
 
-#include "checks.h"
 #include "meshes.h"
 #include "surfaces.h"
 
@@ -30,6 +29,11 @@ void check_closest(const Vector_3& p, const Vector_3& q, const std::array<Vector
     size = (std::max)(size, (w - q).norm());
   for(const Vector_3& w : t)
     RCO_CHECK_LESS_EQUAL((p - q).dot(w - q), 1e-11 * size * size);
+}
+
+Vector_3 at(const std::array<Vector_3, 3>& t, const Vector_3& b)
+{
+  return b(0) * t[0] + b(1) * t[1] + b(2) * t[2];
 }
 
 void test_closest_barycentric()
@@ -70,18 +74,17 @@ void test_closest_barycentric()
     if(i % 7 == 0) // above the inside
     {
       const Vector_3 b = random.barycentric();
-      p =
-        b(0) * t[0] + b(1) * t[1] + b(2) * t[2] + 0.3 * random() * (t[1] - t[0]).cross(t[2] - t[0]);
+      p = at(t, b) + 0.3 * random() * (t[1] - t[0]).cross(t[2] - t[0]);
     }
     const Vector_3 b = internal::closest_barycentric(p, t[0], t[1], t[2]);
     RCO_CHECK(b.allFinite() && b.minCoeff() >= 0);
     RCO_CHECK_NEAR(b.sum(), 1., 1e-14);
-    const Vector_3 q = b(0) * t[0] + b(1) * t[1] + b(2) * t[2];
+    const Vector_3 q = at(t, b);
     const double distance = (q - p).norm();
     for(int k = 0; k < 40; ++k)
     {
       const Vector_3 s = random.barycentric();
-      RCO_CHECK_LESS_EQUAL(distance, (s(0) * t[0] + s(1) * t[1] + s(2) * t[2] - p).norm() + 1e-7);
+      RCO_CHECK_LESS_EQUAL(distance, (at(t, s) - p).norm() + 1e-7);
     }
     for(int k = 0; k < 3; ++k)
       RCO_CHECK_LESS_EQUAL(distance, (t[k] - p).norm() + 1e-12);
@@ -107,9 +110,9 @@ void test_closest_in_needles()
     std::array<Vector_3, 3> t = {{random.in_cube(1), random.in_cube(1), random.in_cube(1)}};
     t[i % 3] = length * random.in_cube(1);
     const Vector_3 s = random.barycentric();
-    const Vector_3 p = s(0) * t[0] + s(1) * t[1] + s(2) * t[2];
+    const Vector_3 p = at(t, s);
     const Vector_3 b = internal::closest_barycentric(p, t[0], t[1], t[2]);
-    RCO_CHECK_LESS_EQUAL((b(0) * t[0] + b(1) * t[1] + b(2) * t[2] - p).norm(), 1e-11 * length);
+    RCO_CHECK_LESS_EQUAL((at(t, b) - p).norm(), 1e-11 * length);
   }
 }
 

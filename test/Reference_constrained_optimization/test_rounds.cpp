@@ -6,7 +6,6 @@
 
 #include "Located_shape.h"
 #include "Recorder.h"
-#include "checks.h"
 #include "deformations.h"
 
 #include <CGAL/Random.h>
@@ -175,10 +174,7 @@ void test_round(internal::Moves moves, const Shape& start, const Shape& regular)
   const Scope scope("round, " + std::to_string(int(moves)));
   Located_shape scene(start, regular);
   const RCO::Exponential_MIPS_density density(1);
-  const auto measure = [&]() {
-    return internal::measure<CGAL::Sequential_tag>(scene.state, density, 1e300);
-  };
-  const internal::Global_measure before = measure();
+  const internal::Global_measure before = scene.measure(density);
   Recorder recorder;
   RCO::Result result;
   internal::Interruption interruption(recorder, std::chrono::steady_clock::now(), 1e9);
@@ -198,7 +194,7 @@ void test_round(internal::Moves moves, const Shape& start, const Shape& regular)
   RCO_CHECK(solver.solve(internal::Patch_partition(mesh, 90).divide(
                            std::vector<char>(mesh.number_of_faces(), 1), random),
                          moves, density, settings));
-  const internal::Global_measure after = measure();
+  const internal::Global_measure after = scene.measure(density);
   RCO_CHECK_LESS(3u, recorder.accepted);
   RCO_CHECK_LESS(recorder.energy_change, 0.);
   RCO_CHECK_NEAR(after.energy - before.energy, recorder.energy_change, 1e-9 * before.energy);

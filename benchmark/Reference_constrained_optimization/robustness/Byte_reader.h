@@ -30,26 +30,11 @@ public:
   double number()
   {
     typedef std::numeric_limits<double> Limits;
-    const std::array<double, 20> special = {{Limits::quiet_NaN(),
-                                             Limits::infinity(),
-                                             -Limits::infinity(),
-                                             Limits::max(),
-                                             Limits::min(),
-                                             Limits::denorm_min(),
-                                             -0.,
-                                             1e160,
-                                             -1e100,
-                                             1e61,
-                                             1e50,
-                                             1e16,
-                                             -1e6,
-                                             1e3,
-                                             1e-3,
-                                             1e-6,
-                                             1e-9,
-                                             -1e-16,
-                                             1e-61,
-                                             1e-160}};
+    const double nan = Limits::quiet_NaN(), infinity = Limits::infinity(), largest = Limits::max(),
+                 smallest = Limits::min(), denormal = Limits::denorm_min();
+    const std::array<double, 20> special = {
+      {nan,  infinity, -infinity, largest, smallest, denormal, -0.,  1e160,  -1e100, 1e61,
+       1e50, 1e16,     -1e6,      1e3,     1e-3,     1e-6,     1e-9, -1e-16, 1e-61,  1e-160}};
     const unsigned kind = byte();
     if(kind < 200)
       return (kind < 100 ? int(kind) : 99 - int(kind)) / 8.;

@@ -174,13 +174,11 @@ inline Violated_guarantees violated_guarantees(const Mesh& input,
 }
 
 // what `Minimum_angle_energy` is for
-inline void check_angles(const Mesh& placed,
-                         const Mesh& output,
+inline void check_angles(const RCO::Angle_statistics& before,
+                         const RCO::Angle_statistics& after,
                          const RCO::Result& r,
                          Violated_guarantees& broken)
 {
-  const RCO::Angle_statistics before = RCO::angle_statistics(placed),
-                              after = RCO::angle_statistics(output);
   const double rounding = 1e-6; // of a small angle that is found by its cosine
   const bool repairs = number_of_defects(r) < number_of_initial_defects(r); // that may cost
   broken.add_if(!repairs && after.minimum < before.minimum - rounding,
@@ -265,12 +263,12 @@ inline Outcome checked_run(const Mesh& input,
     Violated_guarantees broken =
       violated_guarantees(input, {placed, placed_locations}, {mesh, locations},
                           reference ? *reference : input, freedom, r, visitor.violations);
-    check_angles(placed, mesh, r, broken);
+    const RCO::Angle_statistics in = RCO::angle_statistics(placed),
+                                out = RCO::angle_statistics(mesh);
+    check_angles(in, out, r, broken);
     if(!reference)
       check_shape(input, mesh, r, broken);
     text = broken.text();
-    const RCO::Angle_statistics in = RCO::angle_statistics(placed),
-                                out = RCO::angle_statistics(mesh);
     figures.angle_minimum_in = in.minimum;
     figures.angle_mean_in = in.mean;
     figures.angle_minimum_out = out.minimum;

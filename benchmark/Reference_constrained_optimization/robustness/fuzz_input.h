@@ -231,27 +231,13 @@ private:
 
   static Soup in_other_units(const Soup& s, unsigned kind)
   {
-    switch(kind)
-    {
-    case 8:
-      return scaled(s, 1e6);
-    case 9:
-      return scaled(s, 1e-6);
-    case 10:
-      return scaled(s, 1e55);
-    case 11:
-      return scaled(s, 1e-55);
-    case 12:
-      return scaled(s, 1, 1, 0);
-    case 13:
-      return scaled(s, 1e5, 1, 1);
-    case 14:
-      return shifted(s, Vector_3(1e6, -2e6, 7e5));
-    case 15:
-      return scaled(s, 1, 1, 1e-9);
-    default:
-      return s;
-    }
+    const double factors[] = {1e6, 1e-6, 1e55, 1e-55};
+    return kind < 8     ? s
+           : kind < 12  ? scaled(s, factors[kind - 8])
+           : kind == 12 ? scaled(s, 1, 1, 0)
+           : kind == 13 ? scaled(s, 1e5, 1, 1)
+           : kind == 14 ? shifted(s, Vector_3(1e6, -2e6, 7e5))
+                        : scaled(s, 1, 1, 1e-9);
   }
 
   static Mesh built(const Soup& s)

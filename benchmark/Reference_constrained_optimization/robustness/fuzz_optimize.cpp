@@ -181,18 +181,16 @@ void print(const Fuzz_input& in)
   list("constrained edges", in.edges, in.mesh.number_of_edges());
   list("edges of the reference", in.reference_edges, in.reference.number_of_edges());
   list("range of faces", in.faces, in.mesh.number_of_faces());
-  std::cerr << "\nmesh ";
-  CGAL::IO::write_OFF(std::cerr, in.mesh, CGAL::parameters::stream_precision(17));
+  std::cerr << "\n";
+  const auto print_mesh = [](const std::string& name, const Mesh& mesh) {
+    std::cerr << name << " ";
+    CGAL::IO::write_OFF(std::cerr, mesh, CGAL::parameters::stream_precision(17));
+  };
+  print_mesh("mesh", in.mesh);
   if(in.has_reference)
-  {
-    std::cerr << "reference ";
-    CGAL::IO::write_OFF(std::cerr, in.reference, CGAL::parameters::stream_precision(17));
-  }
+    print_mesh("reference", in.reference);
   if(in.energy == Fuzz_energy::compatible_remeshing)
-  {
-    std::cerr << "source ";
-    CGAL::IO::write_OFF(std::cerr, in.source, CGAL::parameters::stream_precision(17));
-  }
+    print_mesh("source", in.source);
 }
 
 void print(const std::string& text)

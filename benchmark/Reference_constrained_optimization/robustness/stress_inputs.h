@@ -254,8 +254,7 @@ inline std::vector<Stress_input> stress_inputs()
       mesh_without_area)
     .against(ball);
   add("all vertices on one line of the reference",
-      deformed(square, [](const Vector_3& p) { return Vector_3(p.x(), 0.5, 0); }),
-      mesh_without_area)
+      shifted(scaled(square, 1, 0, 0), Vector_3(0, 0.5, 0)), mesh_without_area)
     .against(square)
     .with_noise(optimized);
   add("all vertices on a slanted line of the reference",
@@ -263,13 +262,9 @@ inline std::vector<Stress_input> stress_inputs()
       {{Outcome::improved, Outcome::nothing_to_do, Outcome::refused},
        "mesh: every face has zero area"})
     .against(square);
-  add("mesh upright on the reference",
-      deformed(square, [](const Vector_3& p) { return Vector_3(p.x(), 0.5, 0.1 * p.y()); }),
-      optimized)
-    .against(square);
-  add("pillow upright on the reference",
-      deformed(pillow(6), [](const Vector_3& p) { return Vector_3(p.x(), 0.5, 0.1 * p.y()); }),
-      mesh_without_area)
+  const auto upright = [](const Vector_3& p) { return Vector_3(p.x(), 0.5, 0.1 * p.y()); };
+  add("mesh upright on the reference", deformed(square, upright), optimized).against(square);
+  add("pillow upright on the reference", deformed(pillow(6), upright), mesh_without_area)
     .against(square)
     .with_noise(optimized);
 
@@ -306,8 +301,7 @@ inline std::vector<Stress_input> stress_inputs()
   add("mesh finer than the reference", scaled(sphere(4), 0.9), improves).against(sphere(1));
   add("mesh coarser than the reference", coarse, optimized).against(sphere(4));
   add("sphere onto half a sphere", ball, is_refused("mesh: vertex"))
-    .against(deformed(square,
-                      [](const Vector_3& p) { return Vector_3(2 * p.x() - 1, 2 * p.y() - 1, 0); }));
+    .against(shifted(scaled(square, 2), Vector_3(-1, -1, 0)));
   add("part of the reference", deformed(square, skewed), improves)
     .against(shifted(scaled(plane(7, 7), 3, 3, 1), Vector_3(-1, -1, 0)));
   add("regular triangles",
