@@ -107,20 +107,13 @@ inline double peak_memory() // in megabytes, of this process so far
 #endif
 }
 
-inline const char* name(RCO::Status status)
+inline std::string name(RCO::Status status)
 {
-  switch(status)
-  {
-  case RCO::Status::converged:
-    return "converged";
-  case RCO::Status::iteration_limit:
-    return "iteration limit";
-  case RCO::Status::time_limit:
-    return "time limit";
-  case RCO::Status::interrupted:
-    return "interrupted";
-  case RCO::Status::nothing_to_do:
-    return "nothing to do";
-  }
-  return "";
+  static const std::map<RCO::Status, std::string> names = {
+    {RCO::Status::converged, "converged"},
+    {RCO::Status::iteration_limit, "iteration limit"},
+    {RCO::Status::time_limit, "time limit"},
+    {RCO::Status::interrupted, "interrupted"},
+    {RCO::Status::nothing_to_do, "nothing to do"}};
+  return names.at(status);
 }

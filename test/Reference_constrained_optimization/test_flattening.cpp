@@ -414,18 +414,16 @@ void test_walk_on(const Shape& shape, const std::string& name, bool is_convex)
   const std::vector<Vector_2> u = planar_points(shape);
   if(!RCO_CHECK(is_locally_injective_exactly(mesh, u)))
     return;
-  Vector_2 low = u[0], high = u[0];
+  Eigen::AlignedBox2d box;
   for(const Vector_2& p : u)
-  {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+    box.extend(p);
+  const Vector_2 low = box.min() - Vector_2(0.1, 0.1), high = box.max() + Vector_2(0.1, 0.1);
   const int n = mesh.number_of_faces();
   Random random(4);
   Walk_counts anywhere, at_vertices, on_edges, near_by;
   for(int i = 0; i < 3000; ++i)
   {
-    const Vector_2 p(random(low(0) - 0.1, high(0) + 0.1), random(low(1) - 0.1, high(1) + 0.1));
+    const Vector_2 p(random(low(0), high(0)), random(low(1), high(1)));
     check_walk(mesh, u, p, random.index(n), false, anywhere);
   }
   for(int i = 0; i < 1000; ++i)

@@ -12,10 +12,6 @@
 #include <tbb/global_control.h>
 #endif
 
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-
 const std::string usage =
   R"(usage: scaling_benchmark mesh [options]
 

@@ -10,13 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <fstream>
-#include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 const std::string usage =
   R"(usage: compatible_benchmark pair [options]

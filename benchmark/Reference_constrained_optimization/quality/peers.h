@@ -29,7 +29,7 @@ Peer_result optimize(const Mesh& input, const Named_parameters& np)
   return timed(input, [&](Mesh& mesh) {
     const auto r =
       CGAL::reference_constrained_optimize(mesh, mesh, RCO::Minimum_angle_energy(), np);
-    return std::string(::name(r.status)) + ", " + iterations_text(r.number_of_iterations);
+    return ::name(r.status) + ", " + iterations_text(r.number_of_iterations);
   });
 }
 

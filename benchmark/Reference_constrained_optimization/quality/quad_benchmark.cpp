@@ -8,10 +8,6 @@
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-
 const std::string usage =
   R"(usage: quad_benchmark mesh[:reference] [options]
 

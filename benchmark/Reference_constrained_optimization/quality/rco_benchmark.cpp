@@ -9,10 +9,6 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/certified_drift.h>
 
-#include <cstddef>
-#include <string>
-#include <vector>
-
 typedef Mesh::Property_map<Mesh::Edge_index, bool> Edge_map;
 
 const std::string usage =
@@ -65,14 +61,13 @@ std::string violated_guarantees(const Mesh& input,
                                 const Mesh& output,
                                 const Mesh& reference,
                                 const Edge_map& is_constrained,
+                                const Defects_in_and_out& defects,
                                 std::size_t monotonicity_violations)
 {
   std::vector<char> is_fixed(input.number_of_vertices(), 0);
   for(const Mesh::Edge_index e : input.edges())
     if(input.is_border(e) || is_constrained[e])
       is_fixed[input.vertex(e, 0)] = is_fixed[input.vertex(e, 1)] = 1;
-  const Defects_in_and_out defects = {RCO::orientation_defects(input, reference),
-                                      RCO::orientation_defects(output, reference)};
   Violated_guarantees broken;
   const auto is_free = [&](Mesh::Vertex_index v) { return !is_fixed[v] && !input.is_isolated(v); };
   broken.check_run(input, output, reference, defects, monotonicity_violations, is_free, is_free);
@@ -119,8 +114,9 @@ bool run(const Command_line& arguments, Row& row)
       "certified_drift",
       RCO::certified_drift(mesh, reference, 0.02 * drift.reference_mean_edge_length).upper_bound() /
         drift.reference_mean_edge_length);
-  add_flips_and_folds(
-    row, {RCO::orientation_defects(input, reference), RCO::orientation_defects(mesh, reference)});
+  const Defects_in_and_out defects = {RCO::orientation_defects(input, reference),
+                                      RCO::orientation_defects(mesh, reference)};
+  add_flips_and_folds(row, defects);
   add_iterations(row, r);
 
   const double patches = double(r.number_of_patches);
@@ -146,7 +142,7 @@ bool run(const Command_line& arguments, Row& row)
 
   write(mesh, s.output_folder, base_name(file));
   return !s.check || add_check(row, s.method, [&]() {
-    return violated_guarantees(input, mesh, reference, is_constrained, visitor.violations);
+    return violated_guarantees(input, mesh, reference, is_constrained, defects, visitor.violations);
   });
 }
 

@@ -6,11 +6,6 @@
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
-#include <cmath>
-#include <map>
-#include <stdexcept>
-#include <string>
-
 const std::string usage =
   R"(usage: side_by_side mesh --method NAME [options]
 

@@ -13,13 +13,8 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <exception>
 #include <functional>
 #include <iterator>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 
