@@ -63,28 +63,50 @@ inline bool same_connectivity(const Mesh& a, const Mesh& b)
   return true;
 }
 
-inline RCO::Result call(Mesh& mesh,
-                        const Mesh* reference, // none: the mesh itself
-                        const Vertex_map& is_constrained,
-                        const Locations::Map& locations,
-                        const Run_settings& s,
-                        unsigned int iterations,
-                        Monotonicity_visitor& visitor)
+// A copy of the input that is optimized, and where the package says that its vertices lie.
+struct Run
 {
-  const Mesh& surface = reference ? *reference : mesh;
+  Mesh mesh;
+  Vertex_map is_constrained;
+  Locations locations;
+  RCO::Result result;
+
+  Run(const Mesh& input, const Mesh& reference, const std::function<bool(std::size_t)>& is)
+    : mesh(input),
+      is_constrained(mesh.add_property_map<Mesh::Vertex_index, bool>("is_constrained").first),
+      locations(mesh, reference)
+  {
+    for(const Mesh::Vertex_index v : mesh.vertices())
+      is_constrained[v] = is && is(std::size_t(v));
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+};
+
+// without a reference that is the mesh itself
+inline void call(Run& run,
+                 const Mesh* reference,
+                 const Run_settings& s,
+                 unsigned int iterations,
+                 Monotonicity_visitor& visitor)
+{
+  const Mesh& surface = reference ? *reference : run.mesh;
   const auto call_with = [&](const auto& own) {
-    return CGAL::reference_constrained_optimize(mesh, surface, RCO::Minimum_angle_energy(),
-                                                own.random_seed(s.seed)
-                                                  .number_of_iterations(iterations)
-                                                  .vertex_is_constrained_map(is_constrained)
-                                                  .relax_constraints(s.relax_constraints)
-                                                  .visitor(std::ref(visitor)));
+    run.result =
+      CGAL::reference_constrained_optimize(run.mesh, surface, RCO::Minimum_angle_energy(),
+                                           own.random_seed(s.seed)
+                                             .number_of_iterations(iterations)
+                                             .vertex_is_constrained_map(run.is_constrained)
+                                             .relax_constraints(s.relax_constraints)
+                                             .visitor(std::ref(visitor)));
   };
   const auto own =
     CGAL::parameters::use_on_surface_steps(s.on_surface).use_finishing_stage(s.finishing);
   // there are no locations on quads
-  return CGAL::is_triangle_mesh(surface) ? call_with(own.vertex_location_map(locations))
-                                         : call_with(own);
+  if(CGAL::is_triangle_mesh(surface))
+    call_with(own.vertex_location_map(run.locations.map()));
+  else
+    call_with(own);
 }
 
 inline std::size_t number_of_initial_defects(const RCO::Result& r)
@@ -98,26 +120,19 @@ inline std::size_t number_of_defects(const RCO::Result& r)
   return r.number_of_flips + r.number_of_fold_edges + r.number_of_nonconvex_quads;
 }
 
-// a mesh as the package leaves it, and where it says that the vertices lie
-struct Located
-{
-  const Mesh& mesh;
-  const Locations& locations;
-};
-
 // what a vertex may do
 enum class Vertex_freedom : char { fixed, on_reference, on_line };
 
-// What the result breaks, whatever the energy. `located` is the input with its free vertices put onto the
+// What the result breaks, whatever the energy. `placed` is the input with its free vertices put onto the
 // reference: that is what must not become worse.
 inline Violated_guarantees violated_guarantees(const Mesh& input,
-                                               const Located& placed,
-                                               const Located& output,
+                                               const Run& placed,
+                                               const Run& output,
                                                const Mesh& reference,
                                                const std::vector<Vertex_freedom>& freedom,
-                                               const RCO::Result& r,
                                                std::size_t monotonicity_violations)
 {
+  const RCO::Result& r = output.result;
   Violated_guarantees broken;
   broken.add_if(!same_connectivity(input, output.mesh), "connectivity changed");
   std::size_t bad = 0, moved = 0;
@@ -221,53 +236,42 @@ inline Outcome checked_run(const Mesh& input,
                            Run_figures& figures,
                            std::string& text)
 {
-  Mesh mesh = input, placed = input;
-  const auto constraints = [&](Mesh& m) {
-    const Vertex_map map = m.add_property_map<Mesh::Vertex_index, bool>("is_constrained").first;
-    if(is_constrained)
-      for(const Mesh::Vertex_index v : m.vertices())
-        map[v] = is_constrained(std::size_t(v));
-    return map;
-  };
-  const Vertex_map map = constraints(mesh), placed_map = constraints(placed);
-  const Locations locations(mesh, reference ? *reference : input),
-    placed_locations(placed, reference ? *reference : input);
-  figures.number_of_faces = mesh.number_of_faces();
+  const Mesh& surface = reference ? *reference : input;
+  Run run(input, surface, is_constrained), placed(input, surface, is_constrained);
+  figures.number_of_faces = input.number_of_faces();
   try
   {
-    Monotonicity_visitor visitor;
-    RCO::Result r;
+    Monotonicity_visitor visitor, unused;
     try
     {
-      r = call(mesh, reference, map, locations.map(), settings, 30, visitor);
+      call(run, reference, settings, 30, visitor);
     }
     catch(const RCO::Invalid_input& e)
     {
       text = e.what();
-      if(same_bits(mesh, input))
+      if(same_bits(run.mesh, input))
         return Outcome::refused;
       text = "mesh touched in spite of the refusal: " + text;
       return Outcome::violated_guarantee;
     }
+    const RCO::Result& r = run.result;
     figures.seconds = r.running_time;
-    Monotonicity_visitor unused;
-    call(placed, reference, placed_map, placed_locations.map(), settings, 0, unused);
+    call(placed, reference, settings, 0, unused);
 
     // borders slide if constraints are relaxed: then only what the map constrains must stay
     std::vector<Vertex_freedom> freedom(input.number_of_vertices(), Vertex_freedom::on_reference);
     for(const Mesh::Vertex_index v : input.vertices())
-      if(map[v] || input.is_isolated(v))
+      if(run.is_constrained[v] || input.is_isolated(v))
         freedom[v] = Vertex_freedom::fixed;
       else if(input.is_border(v))
         freedom[v] = settings.relax_constraints ? Vertex_freedom::on_line : Vertex_freedom::fixed;
     Violated_guarantees broken =
-      violated_guarantees(input, {placed, placed_locations}, {mesh, locations},
-                          reference ? *reference : input, freedom, r, visitor.violations);
-    const RCO::Angle_statistics in = RCO::angle_statistics(placed),
-                                out = RCO::angle_statistics(mesh);
+      violated_guarantees(input, placed, run, surface, freedom, visitor.violations);
+    const RCO::Angle_statistics in = RCO::angle_statistics(placed.mesh),
+                                out = RCO::angle_statistics(run.mesh);
     check_angles(in, out, r, broken);
     if(!reference)
-      check_shape(input, mesh, r, broken);
+      check_shape(input, run.mesh, r, broken);
     text = broken.text();
     figures.angle_minimum_in = in.minimum;
     figures.angle_mean_in = in.mean;

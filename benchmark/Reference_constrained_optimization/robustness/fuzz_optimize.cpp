@@ -31,7 +31,6 @@ struct Fuzz_visitor : Monotonicity_visitor
   bool go_further() { return ++questions != stop_after; }
 };
 
-typedef Mesh::Property_map<Mesh::Vertex_index, bool> Vertex_map;
 typedef Mesh::Property_map<Mesh::Edge_index, bool> Edge_map;
 
 Edge_map edge_map(Mesh& mesh, const Fuzz_pattern& pattern)
@@ -42,27 +41,15 @@ Edge_map edge_map(Mesh& mesh, const Fuzz_pattern& pattern)
   return map;
 }
 
-// a copy of the mesh that is optimized
-struct Run
+struct Fuzz_run : Run
 {
-  Mesh mesh;
-  Vertex_map is_constrained;
   Edge_map is_line;
-  Locations locations;
   Fuzz_visitor visitor;
-  RCO::Result result;
 
-  Run(const Fuzz_input& in, const Mesh& reference)
-    : mesh(in.mesh),
-      is_constrained(mesh.add_property_map<Mesh::Vertex_index, bool>("is_constrained").first),
-      is_line(edge_map(mesh, in.edges)),
-      locations(mesh, reference)
-  {
-    for(const Mesh::Vertex_index v : mesh.vertices())
-      is_constrained[v] = in.vertices(std::size_t(v));
-  }
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  Fuzz_run(const Fuzz_input& in, const Mesh& reference)
+    : Run(in.mesh, reference, in.vertices),
+      is_line(edge_map(mesh, in.edges))
+  {}
 };
 
 std::vector<Mesh::Face_index> face_range(const Fuzz_input& in, const Mesh& mesh)
@@ -79,7 +66,7 @@ void call(Fuzz_input& in,
           const Edge_map& reference_lines,
           const Energy& energy,
           const NamedParameters& np,
-          Run& r)
+          Fuzz_run& r)
 {
   const Mesh& reference = in.has_reference ? in.reference : r.mesh;
   if(in.faces.is_used)
@@ -97,7 +84,7 @@ void optimize(Fuzz_input& in,
               const Edge_map& reference_lines,
               const Energy& energy,
               unsigned iterations,
-              Run& r)
+              Fuzz_run& r)
 {
   const auto own = CGAL::parameters::use_on_surface_steps(in.on_surface)
                      .use_finishing_stage(in.finishing)
@@ -122,7 +109,7 @@ void optimize(Fuzz_input& in,
     call_with(own);
 }
 
-void optimize(Fuzz_input& in, const Edge_map& reference_lines, unsigned iterations, Run& r)
+void optimize(Fuzz_input& in, const Edge_map& reference_lines, unsigned iterations, Fuzz_run& r)
 {
   switch(in.energy)
   {
@@ -138,7 +125,7 @@ void optimize(Fuzz_input& in, const Edge_map& reference_lines, unsigned iteratio
   }
 }
 
-std::vector<Vertex_freedom> freedom(const Fuzz_input& in, const Run& r)
+std::vector<Vertex_freedom> freedom(const Fuzz_input& in, const Fuzz_run& r)
 {
   std::vector<Vertex_freedom> freedom(in.mesh.number_of_vertices(), Vertex_freedom::on_reference);
   const Vertex_freedom on_line =
@@ -203,7 +190,7 @@ void print(const std::string& text)
 std::string violated_guarantees(Fuzz_input& in)
 {
   const Edge_map reference_lines = edge_map(in.reference, in.reference_edges);
-  Run run(in, in.reference);
+  Fuzz_run run(in, in.reference);
   run.visitor.stop_after = in.stop_after;
   try
   {
@@ -229,15 +216,14 @@ std::string violated_guarantees(Fuzz_input& in)
   if(is_stopped && same_bits(run.mesh, in.mesh))
     return ""; // perhaps in setup: then there are no energies
 
-  Run placed(in, in.reference);
+  Fuzz_run placed(in, in.reference);
   optimize(in, reference_lines, 0, placed);
-  std::string text =
-    violated_guarantees(in.mesh, {placed.mesh, placed.locations}, {run.mesh, run.locations},
-                        in.reference, freedom(in, run), r, run.visitor.violations)
-      .text();
+  std::string text = violated_guarantees(in.mesh, placed, run, in.reference, freedom(in, run),
+                                         run.visitor.violations)
+                       .text();
   if(text.empty() && in.twice)
   {
-    Run again(in, in.reference);
+    Fuzz_run again(in, in.reference);
     again.visitor.stop_after = in.stop_after;
     optimize(in, reference_lines, in.iterations, again);
     if(!same_bits(run.mesh, again.mesh))
