@@ -2,11 +2,13 @@
 
 #include "../library_call.h"
 #include "../result_columns.h"
-#include "subdivided.h"
+#include "../shape.h"
 
+#include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/Quad_regularity_energy.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
+#include <CGAL/subdivision_method_3.h>
 
 const std::string usage =
   R"(usage: quad_benchmark mesh[:reference] [options]
@@ -45,6 +47,32 @@ Files split_at_colon(const std::string& argument, const std::string& default_ref
   if(colon == std::string::npos)
     return {argument, default_reference};
   return {argument.substr(0, colon), argument.substr(colon + 1)};
+}
+
+// `steps` steps of Catmull-Clark subdivision. After each the vertices are put onto the reference,
+// but for those at the border: they stay, or halve its edges.
+Mesh subdivided(Mesh mesh, const Mesh& reference, int steps)
+{
+  if(steps == 0)
+    return mesh;
+  const Shape shape(reference);
+  CGAL::Polygon_mesh_processing::remove_isolated_vertices(mesh);
+  mesh.collect_garbage();
+  for(int i = 0; i < steps; ++i)
+  {
+    const Mesh coarse = mesh;
+    CGAL::Subdivision_method_3::CatmullClark_subdivision(mesh,
+                                                         CGAL::parameters::number_of_iterations(1));
+    for(const Mesh::Vertex_index v : mesh.vertices())
+    {
+      Kernel::Point_3& p = mesh.point(v);
+      if(!mesh.is_border(v))
+        p = shape.project(p);
+      else if(coarse.has_valid_index(v))
+        p = coarse.point(v);
+    }
+  }
+  return mesh;
 }
 
 RCO::Result optimize_quads(Mesh& mesh,

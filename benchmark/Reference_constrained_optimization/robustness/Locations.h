@@ -15,6 +15,15 @@
 #include <utility>
 #include <vector>
 
+inline double largest_coordinate(const Mesh& mesh)
+{
+  double largest = 0;
+  for(const Mesh::Vertex_index v : mesh.vertices())
+    for(int i = 0; i < 3; ++i)
+      largest = (std::max)(largest, std::abs(mesh.point(v)[i]));
+  return largest;
+}
+
 class Locations
 {
 public:
@@ -59,10 +68,7 @@ public:
   RCO::Orientation_defects orientation_defects(bool with_doubtful) const
   {
     const std::vector<Kernel::Vector_3> of_reference = vertex_normals();
-    double largest = 0;
-    for(const Mesh::Vertex_index v : m_mesh.vertices())
-      for(int i = 0; i < 3; ++i)
-        largest = (std::max)(largest, std::abs(m_mesh.point(v)[i]));
+    const double largest = largest_coordinate(m_mesh);
     struct Face
     {
       Kernel::Vector_3 normal;

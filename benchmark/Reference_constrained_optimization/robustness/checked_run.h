@@ -172,12 +172,9 @@ inline Violated_guarantees violated_guarantees(const Mesh& input,
     if(has_triangles)
       defects = {placed.locations.orientation_defects(true),
                  output.locations.orientation_defects(false)};
-    double largest = 0;
-    for(const Mesh::Vertex_index v : reference.vertices())
-      for(int i = 0; i < 3; ++i)
-        largest = (std::max)(largest, std::abs(reference.point(v)[i]));
     const double distance = output.locations.largest_distance(is_on);
-    broken.add_if(distance > 8 * std::numeric_limits<double>::epsilon() * largest,
+    broken.add_if(distance >
+                    8 * std::numeric_limits<double>::epsilon() * largest_coordinate(reference),
                   "a vertex is " + in_short(distance) + " away from its location");
   }
   else if(has_triangles) // there are no locations
