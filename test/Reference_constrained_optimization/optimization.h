@@ -87,13 +87,27 @@ check_vertices(const Shape& before, const Shape& after, const std::vector<char>&
   return number_free;
 }
 
-// defects do not increase, nor does the energy unless a defect was repaired
+// defects and creases do not increase, nor does the energy unless a defect was repaired
 inline void check_progress(const RCO::Result& r)
 {
   RCO_CHECK(std::isfinite(r.initial_energy) && std::isfinite(r.final_energy));
   RCO_CHECK_LESS_EQUAL(defects_after(r), defects_before(r));
+  RCO_CHECK_LESS_EQUAL(r.number_of_creases, r.initial_number_of_creases);
   if(defects_after(r) == defects_before(r))
     RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
+}
+
+// edges of triangles beyond a right angle
+inline std::size_t number_of_creases(const Shape& shape)
+{
+  const Indexed_mesh mesh = indexed(shape);
+  std::size_t number = 0;
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
+    if(const int o = mesh.opposite[c]; o > c)
+      number += vector_area(shape, shape.faces[mesh.corner_face[c]])
+                  .normalized()
+                  .dot(vector_area(shape, shape.faces[mesh.corner_face[o]]).normalized()) < -1e-6;
+  return number;
 }
 
 // all of it: vertices, progress, and distances and defects as others measure them
@@ -122,6 +136,8 @@ void check_result(const Shape& before,
   const RCO::Orientation_defects turned = RCO::orientation_defects(mesh, reference);
   RCO_CHECK_EQUAL(turned.number_of_flips, r.number_of_flips);
   RCO_CHECK_EQUAL(turned.number_of_fold_edges, r.number_of_fold_edges);
+  if(r.number_of_feature_edges == 0 && CGAL::is_triangle_mesh(mesh))
+    RCO_CHECK_EQUAL(number_of_creases(make_shape(mesh)), r.number_of_creases);
 }
 
 } // namespace rco_test

@@ -90,6 +90,7 @@ void test_random_steps(bool has_short_steps)
     Random random(trial);
     Scene scene(scrambled(sphere, 0.35, 10 + trial, onto_sphere), sphere);
     const auto before = scene.measure(density);
+    scene.state.largest_number_of_creases = scene.state.number_of_creases = int(before.creases);
     internal::Step_limits limits;
     limits.density = before.largest_density;
     limits.cosine = before.largest_cosine;
@@ -116,6 +117,7 @@ void test_random_steps(bool has_short_steps)
     }
     const auto after = scene.measure(density);
     RCO_CHECK_LESS_EQUAL(after.defects(), before.defects());
+    RCO_CHECK_LESS_EQUAL(after.creases, before.creases);
     RCO_CHECK(after.defects() < before.defects() || after.energy < before.energy);
     RCO_CHECK_LESS_EQUAL(after.largest_density, before.largest_density);
     RCO_CHECK_LESS_EQUAL(after.largest_cosine, before.largest_cosine);

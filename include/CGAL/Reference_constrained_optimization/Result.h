@@ -75,6 +75,11 @@ struct Result
   std::size_t initial_number_of_nonconvex_quads = 0;
   std::size_t number_of_nonconvex_quads = 0; ///< the same at the end.
 
+  /// creases at the start: edges whose two face normals are more than 90 degrees apart, but for those that are
+  /// constrained or feature edges; folded edges are among them.
+  std::size_t initial_number_of_creases = 0;
+  std::size_t number_of_creases = 0; ///< the same at the end, not more.
+
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.

@@ -155,6 +155,7 @@ void optimize(const FaceRange& range,
   if(!features.is_mechanical.empty() && is_same)
     constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
+  state.is_line = interior_lines(copy.mesh, constraints);
   locate_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption,
                                       distance_of_origin);
   check_distances(copy.points, state, unit);
@@ -199,6 +200,8 @@ void optimize(const FaceRange& range,
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
+  result.initial_number_of_creases = initial.creases;
+  state.largest_number_of_creases = state.number_of_creases = int(initial.creases);
 
   Loop_parameters framed_parameters = loop_parameters;
   framed_parameters.drift_bound /= unit;
@@ -236,6 +239,7 @@ void optimize(const FaceRange& range,
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
+    result.number_of_creases = final.creases;
     result.drift_bound *= unit;
     result.initial_drift *= unit;
     result.drift *= unit;

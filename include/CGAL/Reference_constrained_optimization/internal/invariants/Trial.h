@@ -56,7 +56,8 @@ struct Patch_measure
   double drift_energy = 0; // of the drift barrier
   double angles = 0;       // sum of the faces' smallest angles in degrees, if their mean is bounded
   double volume = 0;       // six times that of the cones over its faces, if it is bounded
-  int inner_defects = 0;   // inverted faces, quads that are not convex, and folded edges inside
+  int inner_creases = 0, boundary_creases = 0; // as for defects
+  int inner_defects = 0;    // inverted faces, quads that are not convex, and folded edges inside
   int boundary_defects = 0; // folded edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
   bool is_lower_than(const Patch_measure& before) const
@@ -114,6 +115,7 @@ struct Step_limits
 {
   double density = 0; // no step may raise the density of an element above it, or further above
   double cosine = 1;  // no step may raise that of an angle above it, or further above
+  bool adds_creases = false; // whether patches may add creases, up to the number of the input
 };
 
 // An invariant is a rule that every accepted step obeys. It derives from this class and has

@@ -118,7 +118,10 @@ private:
       count += is_flipped(mesh, vertex, f, normal) + is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] >= 0)
-          count += is_folded(normal, face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]));
+        {
+          const Vector_3 other = face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]);
+          count += is_folded(normal, other) + (!patch.is_on_line(c) && is_crease(normal, other));
+        }
     }
     return count;
   }

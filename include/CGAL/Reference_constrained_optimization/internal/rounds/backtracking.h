@@ -6,6 +6,7 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_BACKTRACKING_H
 
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Distance_bound.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Edge_creases.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Edge_folds.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Energy_decrease.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Face_orientation.h>
@@ -37,7 +38,7 @@ typedef std::tuple<Face_orientation,
                    Normal_deviation_bound,
                    Distance_bound>
   Local_invariants;
-typedef std::tuple<Volume, Mean_angle, Energy_decrease> Sum_invariants;
+typedef std::tuple<Edge_creases, Volume, Mean_angle, Energy_decrease> Sum_invariants;
 
 // Backtracking on a mover's proposal, measured on R. If an invariant does not hold the step is reduced,
 // first at the violating vertices, then everywhere; only faces that change are measured again.

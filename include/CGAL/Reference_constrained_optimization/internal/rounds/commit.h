@@ -7,7 +7,6 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/rounds/patch_solver.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -15,15 +14,25 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// folds of the edges between the patch and faces outside it, as the state is now
-inline int boundary_folds(const Optimization_state& state, const Solved_patch& s)
+// numbers of folds and creases at the edges between the patch and faces outside it
+struct Boundary_edges
+{
+  int folds = 0, creases = 0;
+};
+
+// as the state is now
+inline Boundary_edges boundary_edges(const Optimization_state& state, const Solved_patch& s)
 {
   const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
-  int count = 0;
-  for(const std::array<int, 2>& faces : s.boundary)
-    count += is_folded(face_normal(state.mesh, vertex, faces[0]),
-                       face_normal(state.mesh, vertex, faces[1]));
-  return count;
+  Boundary_edges result;
+  for(const Solved_patch::Boundary_edge& edge : s.boundary)
+  {
+    const Vector_3 inside = face_normal(state.mesh, vertex, edge.inside),
+                   outside = face_normal(state.mesh, vertex, edge.outside);
+    result.folds += is_folded(inside, outside);
+    result.creases += !edge.is_on_line && is_crease(inside, outside);
+  }
+  return result;
 }
 
 // the energy of the stencils that other patches may have changed, for the current state
@@ -45,24 +54,28 @@ exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& loc
 }
 
 // Decides whether an accepted patch is committed. Another patch of the round may have moved faces across
-// its boundary since the acceptance test: folds there are counted again, and shared stencils are evaluated
+// its boundary since the acceptance test: folds and creases there are counted again, and shared stencils are evaluated
 // again. Only the vertices of boundary faces and shared stencils are exchanged; `commit_inside()` has to
 // follow.
 inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)
     return;
-  const int folds_before = boundary_folds(state, s);
+  const Boundary_edges edges_before = boundary_edges(state, s);
   const double shared_before = shared_energy(state, s);
   exchange(state, s, s.outer_vertices);
   const Patch_measure &before = s.decision.before, &after = s.decision.after;
+  const Boundary_edges edges_after = boundary_edges(state, s);
   const int change =
-    after.inner_defects - before.inner_defects + boundary_folds(state, s) - folds_before;
+    after.inner_defects - before.inner_defects + edges_after.folds - edges_before.folds;
+  const int crease_change =
+    after.inner_creases - before.inner_creases + edges_after.creases - edges_before.creases;
   // energies that are not shared have changed as in the acceptance test
   const double rise = s.shared_stencils.empty() ? 0
                                                 : shared_energy(state, s) - shared_before -
                                                     (after.shared_energy - before.shared_energy);
-  const bool is_better = change < 0 || (change == 0 && after.energy + rise < before.energy);
+  const bool is_better = crease_change <= state.crease_allowance() &&
+                         (change < 0 || (change == 0 && after.energy + rise < before.energy));
   if(!is_better)
   {
     exchange(state, s, s.outer_vertices);
@@ -70,6 +83,7 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
     s.decision.after = s.decision.before;
     return;
   }
+  state.number_of_creases += crease_change;
   s.decision.after.boundary_defects =
     before.boundary_defects + change - (after.inner_defects - before.inner_defects);
 }

@@ -46,8 +46,14 @@ struct Solved_patch
   Patch patch; // its faces and vertices
   std::vector<Patch_samples::Projected_sample> projected_samples;
   Shape_bound::Stored_samples samples;
-  std::vector<std::array<int, 2>> boundary; // per edge to a face outside: that inside, and it
-  std::vector<int> shared_stencils;         // with vertices that other patches may move
+  // edges to faces outside
+  struct Boundary_edge
+  {
+    int inside, outside; // faces
+    bool is_on_line;
+  };
+  std::vector<Boundary_edge> boundary;
+  std::vector<int> shared_stencils; // with vertices that other patches may move
   // the free vertices, in local indices: those of boundary faces and shared stencils, and the others
   std::vector<int> outer_vertices, inner_vertices;
   Backtracking::Decision decision;
@@ -70,7 +76,7 @@ struct Solved_patch
     patch = Patch();
     projected_samples = std::vector<Patch_samples::Projected_sample>();
     samples = Shape_bound::Stored_samples();
-    boundary = std::vector<std::array<int, 2>>();
+    boundary = std::vector<Boundary_edge>();
     shared_stencils = std::vector<int>();
     outer_vertices = std::vector<int>();
     inner_vertices = std::vector<int>();
@@ -167,7 +173,7 @@ private:
         if(s.patch.outside_face[c] >= 0)
         {
           const int f = mesh.corner_face[c];
-          s.boundary.push_back({{s.patch.faces[f], s.patch.outside_face[c]}});
+          s.boundary.push_back({s.patch.faces[f], s.patch.outside_face[c], s.patch.is_on_line(c)});
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
         }

@@ -84,6 +84,17 @@ struct Optimization_state
   double volume_change = 0;
   bool bounds_volume() const { return std::isfinite(largest_volume_change); }
 
+  // per corner: whether its edge is constrained, as feature lines are; empty if none is
+  std::vector<char> is_line = {};
+  bool is_on_line(int c) const { return !is_line.empty() && is_line[c]; }
+
+  // The largest number of creases, and the current one; edges of lines do not count.
+  int largest_number_of_creases = (std::numeric_limits<int>::max)(), number_of_creases = 0;
+  int crease_allowance() const
+  {
+    return (std::max)(0, largest_number_of_creases - number_of_creases);
+  }
+
   bool is_optimized(int f) const { return is_in_range.empty() || is_in_range[f]; }
 
   // nothing is required of faces that are not optimized
@@ -150,6 +161,14 @@ bool is_nonconvex(const Indexed_mesh& mesh, const VertexAccess& vertex, int f)
 inline bool is_folded(const Vector_3& normal_a, const Vector_3& normal_b)
 {
   return normal_a.dot(normal_b) < -0.5 * normal_a.norm() * normal_b.norm();
+}
+
+// Beyond 90 degrees; right angles are no creases, whatever their rounding.
+inline bool is_crease(const Vector_3& normal_a, const Vector_3& normal_b)
+{
+  const double squared_rounding = 1e-12, product = normal_a.dot(normal_b);
+  return product < 0 &&
+         product * product > squared_rounding * normal_a.squaredNorm() * normal_b.squaredNorm();
 }
 
 // Jacobian of one element on the surface
@@ -234,7 +253,7 @@ struct Global_measure
   double capped_energy = 0;   // the same with each density capped
   double largest_density = 0; // largest density of the elements that are not inverted
   double largest_cosine = -1; // largest cosine of an angle of a triangle with an element
-  std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
+  std::size_t creases = 0, flips = 0, fold_edges = 0, nonconvex_quads = 0;
   std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
 
@@ -258,7 +277,11 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if(mesh.opposite[c] > c)
-          m.fold_edges += is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
+        {
+          const Vector_3& other = normals[mesh.corner_face[mesh.opposite[c]]];
+          m.fold_edges += is_folded(normals[f], other);
+          m.creases += !state.is_on_line(c) && is_crease(normals[f], other);
+        }
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
@@ -281,6 +304,7 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     sum.largest_cosine = (std::max)(sum.largest_cosine, m.largest_cosine);
     sum.flips += m.flips;
     sum.fold_edges += m.fold_edges;
+    sum.creases += m.creases;
     sum.nonconvex_quads += m.nonconvex_quads;
   }
   if(!state.stencils.empty())

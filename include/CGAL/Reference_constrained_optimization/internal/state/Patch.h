@@ -42,6 +42,8 @@ struct Patch
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   // per face, and per corner, see Optimization_state; empty if no normal deviation is bounded
   std::vector<char> bounds_normal_deviation, is_smooth;
+  std::vector<char> is_line; // per corner, see Optimization_state; empty if none is
+  bool is_on_line(int c) const { return !is_line.empty() && is_line[c]; }
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
 
@@ -132,6 +134,8 @@ public:
         corners.push_back(m_local[v]);
         if(!state.is_smooth.empty())
           patch.is_smooth.push_back(state.is_smooth[c]);
+        if(!state.is_line.empty())
+          patch.is_line.push_back(state.is_line[c]);
         const int o = mesh.opposite[c];
         const int g = o < 0 ? -1 : mesh.corner_face[o];
         const bool is_inside = g >= 0 && m_face_stamp[g] == m_stamp;

@@ -22,11 +22,11 @@ namespace internal {
 // Defects of faces and edges of a mesh.
 struct Output_defects
 {
-  std::vector<char> is_inverted; // per face: inverted, or a quad that is not convex
-  std::vector<char> is_folded;   // per corner, at the first of the two of an edge
-  std::vector<double> angles;    // per face, in degrees: its smallest; 180 if it is not bounded
+  std::vector<char> is_inverted;          // per face: inverted, or a quad that is not convex
+  std::vector<char> is_folded, is_crease; // per corner, at the first of the two of an edge
+  std::vector<double> angles; // per face, in degrees: its smallest; 180 if it is not bounded
   double smallest_angle = 180;
-  std::size_t number = 0; // of inverted faces and folded edges
+  std::size_t number = 0, number_of_creases = 0; // of inverted faces and folded edges; of creases
 };
 
 // of a state with the given vertices
@@ -42,6 +42,7 @@ Output_defects find_output_defects(const Optimization_state& state,
   Output_defects defects;
   defects.is_inverted.assign(n, 0);
   defects.is_folded.assign(mesh.number_of_corners(), 0);
+  defects.is_crease = defects.is_folded;
   defects.angles.assign(n, 180);
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
     for(int f = begin; f < end; ++f)
@@ -57,8 +58,12 @@ Output_defects find_output_defects(const Optimization_state& state,
   for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
     for(int c = mesh.face_begin[begin]; c < mesh.face_begin[end]; ++c)
       if(mesh.opposite[c] > c)
-        defects.is_folded[c] =
-          is_folded(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
+      {
+        const Vector_3 &a = normals[mesh.corner_face[c]],
+                       &b = normals[mesh.corner_face[mesh.opposite[c]]];
+        defects.is_folded[c] = is_folded(a, b);
+        defects.is_crease[c] = !state.is_on_line(c) && is_crease(a, b);
+      }
   });
   for(int f = 0; f < n; ++f)
   {
@@ -67,6 +72,8 @@ Output_defects find_output_defects(const Optimization_state& state,
   }
   for(const char folded : defects.is_folded)
     defects.number += std::size_t(folded);
+  for(const char crease : defects.is_crease)
+    defects.number_of_creases += std::size_t(crease);
   return defects;
 }
 
@@ -98,13 +105,14 @@ public:
     return m_state.bounds_mean_angle && sum(defects().angles) < sum(m_start.angles);
   }
 
-  // Until there are no more defects than initially, and no angle is below the initial minimum.
+  // Until there are no more defects and creases than initially, and no angle is below the initial minimum.
   void run()
   {
     while(true)
     {
       const Output_defects now = defects();
-      if(now.number <= m_start.number && now.smallest_angle >= m_start.smallest_angle)
+      if(now.number <= m_start.number && !has_more_creases(now) &&
+         now.smallest_angle >= m_start.smallest_angle)
         return;
       if(!restore(vertices_at_new_defects(now)))
         return; // all vertices there are restored
@@ -141,6 +149,11 @@ public:
   }
 
 private:
+  bool has_more_creases(const Output_defects& defects) const
+  {
+    return defects.number_of_creases > m_start.number_of_creases;
+  }
+
   Output_defects defects() const
   {
     return find_output_defects<ConcurrencyTag>(m_state, m_state.vertices);
@@ -161,7 +174,8 @@ private:
          defects.angles[f] < m_start.smallest_angle)
         is_worse[f] = 1;
     for(int c = 0; c < m_mesh.number_of_corners(); ++c)
-      if(defects.is_folded[c] > m_start.is_folded[c])
+      if(defects.is_folded[c] > m_start.is_folded[c] ||
+         (has_more_creases(defects) && defects.is_crease[c] > m_start.is_crease[c]))
         is_worse[m_mesh.corner_face[c]] = is_worse[m_mesh.corner_face[m_mesh.opposite[c]]] = 1;
     std::vector<char> result = vertices_of<ConcurrencyTag>(m_mesh, is_worse);
     // where some vertices of a face are restored already, that was not sufficient
