@@ -7,6 +7,9 @@
 
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
 
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/property_map.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,11 +66,36 @@ public:
     return largest;
   }
 
-  // As the measure of the same name, but with the reference's normals there. What rounding decides
-  // on, as the side to which a face without area is turned, counts or does not.
-  RCO::Orientation_defects orientation_defects(bool with_doubtful) const
+  // The reference's vertex normals. Each of its components is oriented as the faces of the mesh on it, of
+  // those that count.
+  template <typename Counts>
+  std::vector<Kernel::Vector_3> oriented_normals(const Counts& counts) const
   {
-    const std::vector<Kernel::Vector_3> of_reference = vertex_normals();
+    std::vector<Kernel::Vector_3> normals = vertex_normals();
+    std::vector<std::size_t> component(m_reference.number_of_faces());
+    CGAL::Polygon_mesh_processing::connected_components(m_reference,
+                                                        CGAL::make_property_map(component));
+    std::vector<double> agreement(component.size(), 0); // per component
+    std::vector<char> is_reversed(normals.size(), 0);
+    for(const Mesh::Face_index f : m_mesh.faces())
+      if(counts(f))
+        for(const Mesh::Vertex_index v : m_mesh.vertices_around_face(m_mesh.halfedge(f)))
+          agreement[component[m_map[v].first]] += normal(m_mesh, f) * normal_at(v, normals);
+    for(const Mesh::Face_index f : m_reference.faces())
+      if(agreement[component[f]] < 0)
+        for(const Mesh::Vertex_index v : m_reference.vertices_around_face(m_reference.halfedge(f)))
+          is_reversed[v] = 1;
+    for(std::size_t v = 0; v < normals.size(); ++v)
+      if(is_reversed[v])
+        normals[v] = -normals[v];
+    return normals;
+  }
+
+  // As the measure of the same name, but with the given normals of the reference at the locations. What
+  // rounding decides on, as the side to which a face without area is turned, counts or does not.
+  RCO::Orientation_defects orientation_defects(const std::vector<Kernel::Vector_3>& of_reference,
+                                               bool with_doubtful) const
+  {
     const double largest = largest_coordinate(m_mesh);
     struct Face
     {
@@ -76,23 +104,20 @@ public:
       bool is_doubtful() const { return !(length(normal) > doubt); }
     };
     std::vector<Face> faces;
-    double agreement = 0;
     for(const Mesh::Face_index f : m_mesh.faces())
     {
       const Mesh::Halfedge_index h = m_mesh.halfedge(f);
       const double a = edge_length(h), b = edge_length(m_mesh.next(h));
       Kernel::Vector_3 sum = CGAL::NULL_VECTOR;
       for(const Mesh::Vertex_index v : m_mesh.vertices_around_face(h))
-        for(int i = 0; i < 3; ++i)
-          sum = sum + m_map[v].second[i] * of_reference[corner(v, i)];
+        sum = sum + normal_at(v, of_reference);
       const Kernel::Vector_3 n = normal(m_mesh, f);
       faces.push_back({n, n * sum, (std::max)(1e-9 * a * b, 1e-13 * largest * (a + b))});
-      agreement += faces.back().side;
     }
     RCO::Orientation_defects defects;
     const double sign = with_doubtful ? 1 : -1, slack = sign * 1e-9;
     for(const Face& f : faces)
-      defects.number_of_flips += (agreement < 0 ? -f.side : f.side) < sign * 3 * f.doubt;
+      defects.number_of_flips += f.side < sign * 3 * f.doubt;
     for(const Mesh::Edge_index e : m_mesh.edges())
     {
       if(m_mesh.is_border(e))
@@ -114,6 +139,14 @@ private:
     return i == 0   ? m_reference.source(h)
            : i == 1 ? m_reference.target(h)
                     : m_reference.target(m_reference.next(h));
+  }
+  Kernel::Vector_3 normal_at(Mesh::Vertex_index v,
+                             const std::vector<Kernel::Vector_3>& of_reference) const
+  {
+    Kernel::Vector_3 sum = CGAL::NULL_VECTOR;
+    for(int i = 0; i < 3; ++i)
+      sum = sum + m_map[v].second[i] * of_reference[corner(v, i)];
+    return sum;
   }
   // unit vectors, or zero where the faces cancel out
   std::vector<Kernel::Vector_3> vertex_normals() const

@@ -124,13 +124,15 @@ inline std::size_t number_of_defects(const RCO::Result& r)
 enum class Vertex_freedom : char { fixed, on_reference, on_line };
 
 // What the result breaks, whatever the energy. `placed` is the input with its free vertices put onto the
-// reference: that is what must not become worse.
-inline Violated_guarantees violated_guarantees(const Mesh& input,
-                                               const Run& placed,
-                                               const Run& output,
-                                               const Mesh& reference,
-                                               const std::vector<Vertex_freedom>& freedom,
-                                               std::size_t monotonicity_violations)
+// reference: that is what must not become worse. `is_optimized` tells the faces that are.
+template <typename Is_optimized>
+Violated_guarantees violated_guarantees(const Mesh& input,
+                                        const Run& placed,
+                                        const Run& output,
+                                        const Mesh& reference,
+                                        const std::vector<Vertex_freedom>& freedom,
+                                        const Is_optimized& is_optimized,
+                                        std::size_t monotonicity_violations)
 {
   const RCO::Result& r = output.result;
   Violated_guarantees broken;
@@ -171,8 +173,12 @@ inline Violated_guarantees violated_guarantees(const Mesh& input,
   if(CGAL::is_triangle_mesh(reference))
   {
     if(has_triangles)
-      defects = {placed.locations.orientation_defects(true),
-                 output.locations.orientation_defects(false)};
+    {
+      // one orientation for both, or a change of it could hide defects or feign them
+      const std::vector<Kernel::Vector_3> normals = placed.locations.oriented_normals(is_optimized);
+      defects = {placed.locations.orientation_defects(normals, true),
+                 output.locations.orientation_defects(normals, false)};
+    }
     const double distance = output.locations.largest_distance(is_on);
     broken.add_if(distance >
                     8 * std::numeric_limits<double>::epsilon() * largest_coordinate(reference),
@@ -263,8 +269,9 @@ inline Outcome checked_run(const Mesh& input,
         freedom[v] = Vertex_freedom::fixed;
       else if(input.is_border(v))
         freedom[v] = settings.relax_constraints ? Vertex_freedom::on_line : Vertex_freedom::fixed;
-    Violated_guarantees broken =
-      violated_guarantees(input, placed, run, surface, freedom, visitor.violations);
+    Violated_guarantees broken = violated_guarantees(
+      input, placed, run, surface, freedom, [](Mesh::Face_index) { return true; },
+      visitor.violations);
     const RCO::Angle_statistics in = RCO::angle_statistics(placed.mesh),
                                 out = RCO::angle_statistics(run.mesh);
     check_angles(in, out, r, broken);

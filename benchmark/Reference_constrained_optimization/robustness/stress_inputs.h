@@ -298,6 +298,15 @@ inline std::vector<Stress_input> stress_inputs()
   add("mesh of another size than the reference", scaled(ball, 9), is_refused("mesh: vertex 0 is "))
     .against(ball);
   add("reference oriented the other way", ball, improves).against(turned_round(ball));
+  // a square with a fold that is opened, beside a ball
+  const auto folded = [](const Vector_3& p) {
+    return Vector_3(p.x() + 1.6 * p.y() * (1 - p.y()) * std::sin(6.283185307179586 * p.x()), p.y(),
+                    p.z());
+  };
+  const Vector_3 beside(3, 0, 0);
+  add("part of the reference oriented the other way",
+      joined(ball, deformed(plane(20, 20), folded), beside), improves)
+    .against(joined(ball, turned_round(plane(20, 20)), beside));
   add("mesh finer than the reference", scaled(sphere(4), 0.9), improves).against(sphere(1));
   add("mesh coarser than the reference", coarse, optimized).against(sphere(4));
   add("sphere onto half a sphere", ball, is_refused("mesh: vertex"))
