@@ -17,7 +17,7 @@ using namespace rco_test;
 typedef Kernel::Point_3 Point;
 typedef boost::graph_traits<Mesh>::vertex_descriptor Vertex;
 
-const double nan = std::numeric_limits<double>::quiet_NaN(),
+const double not_a_number = std::numeric_limits<double>::quiet_NaN(),
              infinity = std::numeric_limits<double>::infinity();
 
 template <typename Tag, typename Parameters>
@@ -228,7 +228,7 @@ void test_bad_meshes()
     mesh = make_mesh<M>(rough);
     refuses(mesh, M(), energy, np, "reference: the mesh has no face");
   }
-  for(const double value : {nan, infinity, -infinity})
+  for(const double value : {not_a_number, infinity, -infinity})
     for(const int coordinate : {0, 1, 2})
     {
       const Scope scope("not finite");
@@ -341,7 +341,7 @@ struct Bad_energy
     if(f == 5 && what == 2)
       e.rest << 0, 1, 1, 0;
     if(f == 5 && what == 3)
-      e.rest(0, 0) = nan;
+      e.rest(0, 0) = not_a_number;
     if(f == 5 && what == 4)
       e.corners[1] = 3;
     if(what != 5)
@@ -374,27 +374,27 @@ void test_bad_data()
     for(const int what : {1, 2, 3, 4})
       refuses(mesh, reference, Bad_energy(what), np, "face 5");
     refuses(mesh, reference, Bad_energy(5), np, "no element");
-    for(const double factor : {0., -1., nan, infinity})
+    for(const double factor : {0., -1., not_a_number, infinity})
       RCO_CHECK_THROWS(RCO::Minimum_angle_energy{factor}, RCO::Invalid_input, "exponent factor");
   }
   {
     const Scope scope("bad parameters");
-    for(const double value : {-0.1, 0., nan})
+    for(const double value : {-0.1, 0., not_a_number})
     {
       refuses(mesh, reference, energy, params::developability_threshold(value),
               "developability_threshold");
       refuses(mesh, reference, energy, params::maximum_running_time(value), "maximum_running_time");
     }
-    for(const double value : {-1e-9, nan})
+    for(const double value : {-1e-9, not_a_number})
       refuses(mesh, reference, energy, params::energy_tolerance(value), "energy_tolerance");
     refuses(mesh, reference, energy, params::maximum_patch_size(-1), "maximum_patch_size");
     refuses(mesh, reference, energy, params::number_of_iterations(-1), "number_of_iterations");
-    for(const double value : {-1., nan, 1e300, 0.5})
+    for(const double value : {-1., not_a_number, 1e300, 0.5})
     {
       refuses(mesh, reference, energy, params::maximum_patch_size(value), "maximum_patch_size");
       refuses(mesh, reference, energy, params::number_of_iterations(value), "number_of_iterations");
     }
-    for(const double value : {-1e-9, nan})
+    for(const double value : {-1e-9, not_a_number})
       refuses(mesh, reference, energy, params::drift_bound(value), "drift_bound");
     refuses(mesh, reference, energy, params::energy_tolerance(-1e-9), "-1e-09");
   }
