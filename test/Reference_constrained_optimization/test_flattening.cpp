@@ -4,9 +4,9 @@
 
 // Flattening of patches, the checks on it, location in the plane, and mapping back.
 
+#include "Located_shape.h"
 #include "surfaces.h"
 
-#include <CGAL/Reference_constrained_optimization/Minimum_angle_energy.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/mapping_back.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/patch_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/flattening/planar_location.h>
@@ -51,13 +51,36 @@ bool is_locally_injective_exactly(const Indexed_mesh& mesh, const std::vector<Ve
 double planar_area(const Indexed_mesh& mesh, const std::vector<Vector_2>& u)
 {
   double sum = 0;
-  for(int t = 0; t < mesh.number_of_faces(); ++t)
+  for(int c = 0; c < mesh.number_of_corners(); ++c)
   {
-    const int* v = &mesh.corner_vertex[3 * t];
-    const Vector_2 a = u[v[1]] - u[v[0]], b = u[v[2]] - u[v[0]];
+    const Vector_2 &a = u[mesh.source(c)], &b = u[mesh.target(c)];
     sum += 0.5 * (a(0) * b(1) - a(1) * b(0));
   }
   return sum;
+}
+
+// the point with barycentric coordinates w in the triangle t
+template <typename Point>
+Point point_in(const Indexed_mesh& mesh, const std::vector<Point>& points, int t, const Vector_3& w)
+{
+  const int* v = &mesh.corner_vertex[3 * t];
+  return w(0) * points[v[0]] + w(1) * points[v[1]] + w(2) * points[v[2]];
+}
+
+// triangles that hold p, borders included, exactly
+std::vector<int>
+holding(const Indexed_mesh& mesh, const std::vector<Vector_2>& u, const Vector_2& p)
+{
+  std::vector<int> result;
+  for(int t = 0; t < mesh.number_of_faces(); ++t)
+  {
+    bool inside = true;
+    for(int c = 3 * t; c < 3 * t + 3; ++c)
+      inside = inside && !is_positive(u[mesh.target(c)], u[mesh.source(c)], p);
+    if(inside)
+      result.push_back(t);
+  }
+  return result;
 }
 
 struct Expected
@@ -67,22 +90,19 @@ struct Expected
   bool keeps_area = true;
 };
 
-// all guarantees of a flattening, by each method: conformal, mean-value coordinates, equal weights
+// all guarantees of a flattening, by each method
 void test_flattening(const Shape& shape, const std::string& name, const Expected& expected)
 {
   const Indexed_mesh mesh = indexed(shape);
   internal::Patch_flattener flattener;
-  for(const int way : {0, 1, 2})
+  for(const std::string method : {"conformal", "mean-value coordinates", "equal weights"})
   {
-    const bool use_conformal = way == 0;
-    const Scope scope("flattening of " + name +
-                      (way == 0   ? ""
-                       : way == 1 ? ", convex border alone"
-                                  : ", equal weights alone"));
+    const bool use_conformal = method == "conformal";
+    const Scope scope("flattening of " + name + ", " + method);
     internal::Flattening_parameters parameters;
     parameters.use_conformal = use_conformal;
-    parameters.use_mean_value = way < 2;
-    if(way == 2) // from afar
+    parameters.use_mean_value = method != "equal weights";
+    if(!parameters.use_mean_value) // from afar
     {
       parameters.maximum_descent_steps = 500;
       parameters.descent_tolerance = 1e-6;
@@ -181,7 +201,6 @@ void test_flattenings()
 
   const Scope scope("what cannot be flattened");
   internal::Patch_flattener flattener;
-  const Shape nothing = shifted(scaled(plane_grid(3, 3), 0), Vector_3(1, 2, 3));
   const Shape closed = icosphere(1);
   RCO_CHECK(flattener.flatten(indexed(closed), closed.points).path ==
             internal::Flattening_path::failed);
@@ -189,10 +208,8 @@ void test_flattenings()
 
 void test_conformal_maps()
 {
-  const auto part = [](const std::vector<int>& dropped) {
-    return compacted(without_faces(icosphere(0), [=](int f) {
-      return std::find(dropped.begin(), dropped.end(), f) != dropped.end();
-    }));
+  const auto without_first_faces = [](const Shape& shape, int number) {
+    return compacted(without_faces(shape, [=](int f) { return f < number; }));
   };
   struct Named_shape
   {
@@ -204,10 +221,9 @@ void test_conformal_maps()
     {"a rough plane", scrambled(plane_grid(12, 9), 0.35, 1, onto_plane), true},
     {"half a cylinder", cylinder(20, 12, 0.5, 1, pi), true},
     {"half a cone", cone(20, 12, 0.6, 0.3, 1, pi), true},
-    {"a tetrahedron without a face",
-     compacted(without_faces(tetrahedron(), [](int f) { return f == 1; })), false},
-    {"three quarters of an icosahedron", part({0, 1, 2, 3, 4}), false},
-    {"half an icosahedron", part({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}), false}};
+    {"a tetrahedron without a face", without_first_faces(tetrahedron(), 1), false},
+    {"three quarters of an icosahedron", without_first_faces(icosphere(0), 5), false},
+    {"half an icosahedron", without_first_faces(icosphere(0), 10), false}};
   const Eigen::Matrix3d turn =
     Eigen::AngleAxisd(0.7, Vector_3(1, 2, 4).normalized()).toRotationMatrix();
   internal::Flattening_parameters without_descent;
@@ -264,17 +280,8 @@ void test_overlap()
     for(int i = 0; i < 3000; ++i)
     {
       const int goal = random.index(mesh.number_of_faces());
-      const Vector_3 b = random.barycentric();
-      const int* v = &mesh.corner_vertex[3 * goal];
-      const Vector_2 p = b(0) * u[v[0]] + b(1) * u[v[1]] + b(2) * u[v[2]];
-      int holding = 0;
-      for(int t = 0; t < mesh.number_of_faces(); ++t)
-      {
-        const int* w = &mesh.corner_vertex[3 * t];
-        holding += is_positive(u[w[0]], u[w[1]], p) && is_positive(u[w[1]], u[w[2]], p) &&
-                   is_positive(u[w[2]], u[w[0]], p);
-      }
-      ambiguous += holding > 1;
+      const Vector_2 p = point_in(mesh, u, goal, random.barycentric());
+      ambiguous += holding(mesh, u, p).size() > 1;
       // from a triangle near by
       int start = goal;
       for(int step = 0; step < 4; ++step)
@@ -297,25 +304,23 @@ void test_injectivity_checks()
   const Shape plane = plane_grid(4, 4);
   const Indexed_mesh mesh = indexed(plane);
   const std::vector<Vector_2> u = planar_points(plane);
-  const int middle = 12;
   RCO_CHECK(internal::is_locally_injective(mesh, u));
   RCO_CHECK(internal::has_simple_border(mesh, u));
-  std::vector<Vector_2> w = u;
-  w[middle] += Vector_2(0.3, 0.02); // beyond its neighbour: flipped
-  RCO_CHECK(!internal::is_locally_injective(mesh, w));
-  RCO_CHECK(internal::has_simple_border(mesh, w));
-  w = u;
-  w[middle] = u[middle + 1]; // no area
-  RCO_CHECK(!internal::is_locally_injective(mesh, w));
-  w = u;
-  w[middle](0) = std::numeric_limits<double>::quiet_NaN();
-  RCO_CHECK(!internal::is_locally_injective(mesh, w));
-  w[middle](0) = std::numeric_limits<double>::infinity();
-  RCO_CHECK(!internal::is_locally_injective(mesh, w));
-  w = u;
-  for(Vector_2& p : w)
-    p(0) = -p(0); // the mirror image
-  RCO_CHECK(!internal::is_locally_injective(mesh, w));
+  const auto with_middle_at = [&](double x, double y) {
+    std::vector<Vector_2> w = u;
+    w[12] = Vector_2(x, y);
+    return w;
+  };
+  const std::vector<Vector_2> flipped = with_middle_at(0.8, 0.52); // beyond its neighbour
+  RCO_CHECK(internal::has_simple_border(mesh, flipped));
+  std::vector<Vector_2> mirrored = u;
+  for(Vector_2& p : mirrored)
+    p(0) = -p(0);
+  for(const std::vector<Vector_2>& w :
+      {flipped, mirrored, with_middle_at(0.75, 0.5) /* no area */,
+       with_middle_at(std::numeric_limits<double>::quiet_NaN(), 0.5),
+       with_middle_at(std::numeric_limits<double>::infinity(), 0.5)})
+    RCO_CHECK(!internal::is_locally_injective(mesh, w));
   // barely positive, and barely not
   const Indexed_mesh one = indexed(Shape{std::vector<Vector_3>(3), {{0, 1, 2}}});
   const auto is_injective = [&](double y) {
@@ -357,23 +362,6 @@ void test_injectivity_checks()
   }
 }
 
-// triangles that hold p, borders included, exactly
-std::vector<int>
-holding(const Indexed_mesh& mesh, const std::vector<Vector_2>& u, const Vector_2& p)
-{
-  std::vector<int> result;
-  for(int t = 0; t < mesh.number_of_faces(); ++t)
-  {
-    bool inside = true;
-    for(int i = 0; i < 3; ++i)
-      inside = inside && !is_positive(u[mesh.corner_vertex[3 * t + (i + 1) % 3]],
-                                      u[mesh.corner_vertex[3 * t + i]], p);
-    if(inside)
-      result.push_back(t);
-  }
-  return result;
-}
-
 struct Walk_counts
 {
   int found = 0, lost = 0, outside = 0;
@@ -398,9 +386,7 @@ void check_walk(const Indexed_mesh& mesh,
   RCO_CHECK(!truth.empty() || known);
   RCO_CHECK(location.barycentric.minCoeff() >= 0);
   RCO_CHECK_NEAR(location.barycentric.sum(), 1., 1e-14);
-  Vector_2 q = Vector_2::Zero();
-  for(int i = 0; i < 3; ++i)
-    q += location.barycentric(i) * u[mesh.corner_vertex[3 * location.triangle + i]];
+  const Vector_2 q = point_in(mesh, u, location.triangle, location.barycentric);
   RCO_CHECK_LESS_EQUAL((q - p).norm(), 1e-11);
   // strictly inside one triangle it is that triangle
   if(truth.size() == 1 && !known)
@@ -439,9 +425,7 @@ void test_walk_on(const Shape& shape, const std::string& name, bool is_convex)
     const int begin = mesh.vertex_begin[a], degree = mesh.vertex_begin[a + 1] - begin;
     const int t = mesh.corner_face[mesh.vertex_corners[begin + random.index(degree)]];
     const int s = mesh.corner_face[mesh.vertex_corners[begin + random.index(degree)]];
-    const Vector_3 w = random.barycentric();
-    const int* v = &mesh.corner_vertex[3 * t];
-    check_walk(mesh, u, w(0) * u[v[0]] + w(1) * u[v[1]] + w(2) * u[v[2]], s, false, near_by);
+    check_walk(mesh, u, point_in(mesh, u, t, random.barycentric()), s, false, near_by);
   }
   RCO_CHECK_LESS(300, anywhere.found);
   RCO_CHECK_LESS(100, anywhere.outside);
@@ -497,57 +481,34 @@ void test_double_edge()
   }
 }
 
-struct Mesh_on_surface
+// a shape with its vertices at their closest points on the faces of the reference that are allowed
+struct Placed_shape : Located_shape
 {
-  Indexed_mesh mesh;
-  internal::Element_set elements;
-  internal::Optimization_state state;
-
-  Mesh_on_surface(const Shape& shape,
-                  const internal::Reference_surface& surface,
-                  const std::function<bool(int)>& face_is_allowed)
-    : mesh(indexed(shape)),
-      elements(
-        RCO::Minimum_angle_energy(),
-        RCO::Energy_context(mesh.face_begin, mesh.corner_vertex, shape.points.size(), 1, 1, 1)),
-      state{mesh, surface, elements, {}, {}}
+  Placed_shape(const Shape& shape,
+               const Shape& reference,
+               const std::function<bool(int)>& face_is_allowed)
+    : Located_shape(shape, reference)
   {
     for(std::size_t v = 0; v < shape.points.size(); ++v)
     {
-      internal::Located_vertex placed;
       double best = std::numeric_limits<double>::infinity();
       for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
       {
         const internal::Surface_point s = surface.closest_in_face(shape.points[v], f);
-        if(face_is_allowed(f) && (s.position - shape.points[v]).norm() < best)
+        const double distance = (s.position - shape.points[v]).norm();
+        if(face_is_allowed(f) && distance < best)
         {
-          best = (s.position - shape.points[v]).norm();
-          placed.on_reference = s;
+          best = distance;
+          state.vertices[v] = {s, s.position, surface.normal(s), {}};
         }
       }
-      placed.position = placed.on_reference.position;
-      placed.normal = surface.normal(placed.on_reference);
-      state.vertices.push_back(placed);
-      state.is_free.push_back(!mesh.is_border_vertex[v]);
     }
   }
 };
 
-internal::Patch whole_patch(const Mesh_on_surface& placed)
-{
-  std::vector<int> faces;
-  for(int f = 0; f < placed.mesh.number_of_faces(); ++f)
-    faces.push_back(f);
-  return internal::Patch_builder(placed.mesh).build(faces, placed.state);
-}
-
 Vector_3 point_of(const internal::Patch& patch, const internal::Planar_location& location)
 {
-  Vector_3 point = Vector_3::Zero();
-  for(int k = 0; k < 3; ++k)
-    point += location.barycentric(k) *
-             patch.located[patch.polygons.corner_vertex[3 * location.triangle + k]].position;
-  return point;
+  return point_in(patch.polygons, patch.positions(), location.triangle, location.barycentric);
 }
 
 // M is a coarse sheet on the upper one of two wavy sheets: its chords run beyond the lower one,
@@ -557,12 +518,12 @@ void test_map_to_upper_sheet(const Shape& sheets,
                              int coarseness,
                              int expected_wrong_by_tree)
 {
-  const internal::Reference_surface surface = surface_of(sheets);
   const Shape coarse = deformed(plane_grid(coarseness, coarseness, 0.8), [](const Vector_3& p) {
     return Vector_3(p.x() + 0.1, p.y() + 0.1, 0.05 * std::sin(4 * pi * (p.x() + 0.1)));
   });
-  const Mesh_on_surface placed(coarse, surface, is_on_upper);
-  const internal::Patch patch = whole_patch(placed);
+  const Placed_shape placed(coarse, sheets, is_on_upper);
+  const internal::Reference_surface& surface = placed.surface;
+  const internal::Patch patch = placed.whole_patch();
   Random random(5);
   int mapped = 0, tried = 0, wrong_by_tree = 0;
   for(int i = 0; i < 4000; ++i)
@@ -630,9 +591,8 @@ void test_map_to_reference_on_plane()
   {
     const Shape& shape = is_damaged ? damaged : fine;
     int exact = 0;
-    const internal::Reference_surface surface = surface_of(shape);
-    const Mesh_on_surface placed(plane_grid(5, 5), surface, [](int) { return true; });
-    const internal::Patch patch = whole_patch(placed);
+    const Placed_shape placed(plane_grid(5, 5), shape, [](int) { return true; });
+    const internal::Patch patch = placed.whole_patch();
     for(int i = 0; i < 2000; ++i)
     {
       internal::Planar_location location;
@@ -640,7 +600,7 @@ void test_map_to_reference_on_plane()
       location.barycentric = random.barycentric();
       const Vector_3 point = point_of(patch, location);
       internal::Located_vertex result;
-      if(RCO_CHECK(internal::map_to_reference(patch, location, surface, result)))
+      if(RCO_CHECK(internal::map_to_reference(patch, location, placed.surface, result)))
       {
         const double off = (result.position - point).norm();
         exact += off <= 1e-9;
