@@ -19,8 +19,6 @@ using namespace rco_test;
 
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Epick;
 
-namespace {
-
 // |J|^2 and det J of the map from a rest triangle to the triangle (o, p, q) in space
 struct Shape_figures
 {
@@ -303,14 +301,6 @@ void test_errors()
   refused(RCO::Quad_angle_energy());
 }
 
-void print(const Outcome& out, double optimum)
-{
-  std::cout << "  angles +- " << out.corners.standard_deviation << ", edges +- "
-            << out.edges.standard_deviation << ", energy " << out.result.final_energy << " for "
-            << optimum << ", " << out.result.number_of_iterations << " iterations, "
-            << out.result.running_time << " s" << std::endl;
-}
-
 void test_plane_recovery()
 {
   const int n = 14;
@@ -334,7 +324,6 @@ void test_plane_recovery()
       for(std::size_t v = 0; v < regular.points.size(); ++v)
         largest = (std::max)(largest, (out.after.points[v] - regular.points[v]).norm() * n);
       RCO_CHECK_LESS(largest, part_of_side);
-      print(out, optimum);
     };
     // legs as long as the squares' sides: the optimum of equation (7) is 4
     const double side = 1. / n / mean_edge_length(rough);
@@ -372,7 +361,6 @@ void test_tube_recovery()
         RCO_CHECK_LESS(out.edges.standard_deviation, 0.01);
       }
       RCO_CHECK_NEAR(out.result.final_energy, optimum, (on_surface ? 2e-3 : 5e-2) * optimum);
-      print(out, optimum);
     };
     const double l = side / mean_edge_length(rough);
     regular_again(optimized(rough, fine, RCO::Quad_regularity_energy(l), options), 4);
@@ -383,26 +371,23 @@ void test_tube_recovery()
 // where no mesh is all squares: as good as from the regular one
 void test_curved_recovery()
 {
-  const auto as_good = [](const Shape& regular, const Shape& rough, const Shape& fine,
-                          const auto& energy, const std::string& name) {
-    const Scope s(name);
-    const Outcome from_regular = optimized(regular, fine, energy);
-    const Outcome out = optimized(rough, fine, energy);
-    RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
-    RCO_CHECK_LESS_EQUAL(out.result.final_energy, 1.03 * from_regular.result.final_energy);
-    RCO_CHECK_EQUAL(defects_after(out.result), 0u);
-    std::cout << "  " << name << ": energy " << out.result.initial_energy << " -> "
-              << out.result.final_energy << ", from regular " << from_regular.result.final_energy
-              << std::endl;
-  };
-  const Shape ring = torus(30, 12, 1, 0.4, true);
+  const Shape ring = torus(30, 12, 1, 0.4, true), fine_ring = torus(80, 40, 1, 0.4);
   const Shape rough_ring = scrambled(ring, 0.3, 3, onto_torus(1, 0.4));
-  const Shape fine_ring = torus(80, 40, 1, 0.4);
-  as_good(ring, rough_ring, fine_ring, RCO::Quad_regularity_energy(1), "torus, regularity");
-  as_good(ring, rough_ring, fine_ring, RCO::Quad_angle_energy(1), "torus, angles");
   const Shape ball = cube_sphere(8), rough_ball = scrambled(ball, 0.3, 4, onto_sphere);
-  as_good(ball, rough_ball, icosphere(4), RCO::Quad_regularity_energy(1), "sphere, regularity");
-  as_good(ball, rough_ball, icosphere(4), RCO::Quad_angle_energy(1), "sphere, angles");
+  const auto as_good = [&](const auto& energy, const std::string& name) {
+    for(const bool is_ring : {true, false})
+    {
+      const Scope s(name + (is_ring ? ", torus" : ", sphere"));
+      const Shape fine = is_ring ? fine_ring : icosphere(4);
+      const Outcome from_regular = optimized(is_ring ? ring : ball, fine, energy);
+      const Outcome out = optimized(is_ring ? rough_ring : rough_ball, fine, energy);
+      RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
+      RCO_CHECK_LESS_EQUAL(out.result.final_energy, 1.03 * from_regular.result.final_energy);
+      RCO_CHECK_EQUAL(defects_after(out.result), 0u);
+    }
+  };
+  as_good(RCO::Quad_regularity_energy(1), "regularity");
+  as_good(RCO::Quad_angle_energy(1), "angles");
 }
 
 struct Case
@@ -413,18 +398,14 @@ struct Case
 
 std::vector<Case> cases()
 {
-  std::vector<Case> all;
-  all.push_back({"plane grid", scrambled(plane_grid(10, 9, 1, true), 0.25, 5, onto_plane),
-                 ground(23, 21, 1, 0.9), ground(4, 3, 1, 0.9)});
-  all.push_back({"torus", scrambled(torus(24, 10, 1, 0.4, true), 0.3, 6, onto_torus(1, 0.4)),
-                 torus(60, 25, 1, 0.4), torus(18, 8, 1, 0.4)});
-  all.push_back(
-    {"cube sphere", scrambled(cube_sphere(6), 0.3, 7, onto_sphere), icosphere(3), icosphere(1)});
-  all.push_back(
-    {"mixed",
-     scrambled(split(cube_sphere(5), [](int f) { return f % 5 < 2; }), 0.25, 8, onto_sphere),
-     icosphere(3), icosphere(1)});
-  return all;
+  const Shape mixed = split(cube_sphere(5), [](int f) { return f % 5 < 2; });
+  return {
+    {"plane grid", scrambled(plane_grid(10, 9, 1, true), 0.25, 5, onto_plane),
+     ground(23, 21, 1, 0.9), ground(4, 3, 1, 0.9)},
+    {"torus", scrambled(torus(24, 10, 1, 0.4, true), 0.3, 6, onto_torus(1, 0.4)),
+     torus(60, 25, 1, 0.4), torus(18, 8, 1, 0.4)},
+    {"cube sphere", scrambled(cube_sphere(6), 0.3, 7, onto_sphere), icosphere(3), icosphere(1)},
+    {"mixed", scrambled(mixed, 0.25, 8, onto_sphere), icosphere(3), icosphere(1)}};
 }
 
 template <typename M, typename Energy>
@@ -434,20 +415,12 @@ Outcome invariants(const Case& c, int which, const Energy& energy, const Options
   const Scope scope(c.name + ", reference: " + names[which] +
                     (options.on_surface ? ", on the surface" : ", flattened"));
   M mesh = make_mesh<M>(c.shape);
-  Outcome out;
-  if(which == 2)
-    out = run<CGAL::Sequential_tag>(mesh, mesh, energy, options);
-  else
-  {
-    // on a coarse reference, which is a part, patches are told of with the milder exponent of parts
-    Options own = options;
-    own.detect_features = which != 1;
-    out = run<CGAL::Sequential_tag>(mesh,
-                                    make_mesh<M>(which == 0   ? c.fine
-                                                 : which == 1 ? c.coarse
-                                                              : turned_round(c.fine)),
-                                    energy, own);
-  }
+  const Shape others[] = {c.fine, c.coarse, {}, turned_round(c.fine)};
+  const M other = make_mesh<M>(others[which]);
+  // on a coarse reference, which is a part, patches are told of with the milder exponent of parts
+  Options own = options;
+  own.detect_features = which != 1;
+  const Outcome out = run<CGAL::Sequential_tag>(mesh, which == 2 ? mesh : other, energy, own);
   if(which != 1) // a coarse reference may turn a face that is put on it
     RCO_CHECK_EQUAL(defects_before(out.result), 0u);
   RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
@@ -593,9 +566,6 @@ void test_untangling()
       RCO_CHECK_EQUAL(out.result.initial_number_of_nonconvex_quads, broken);
       RCO_CHECK_LESS_EQUAL(out.result.number_of_nonconvex_quads, broken);
       RCO_CHECK_EQUAL(number_nonconvex_in_plane(out.after), out.result.number_of_nonconvex_quads);
-      std::cout << "  " << kind.name << ", " << counts().scopes.back() << ": " << broken << " -> "
-                << out.result.number_of_nonconvex_quads << ", angles " << out.corners.minimum
-                << " to " << out.corners.maximum << std::endl;
       if(is_regularity || options.on_surface)
       {
         RCO_CHECK_EQUAL(out.result.number_of_nonconvex_quads, 0u);
@@ -672,10 +642,6 @@ void test_near_degenerate()
   for(const auto& shape : shapes)
   {
     const Scope scope(shape.first);
-    const RCO::Edge_statistics e = RCO::edge_statistics(mesh_of(shape.second));
-    const RCO::Corner_angle_statistics a = RCO::corner_angle_statistics(mesh_of(shape.second));
-    std::cout << "  " << shape.first << ": edges " << e.minimum << " to " << e.maximum
-              << ", angles " << a.minimum << " to " << a.maximum << std::endl;
     for_energies_and_movers([&](const auto& energy, const Options& options, bool is_regularity) {
       const Outcome out = optimized(shape.second, fine, energy, options);
       RCO_CHECK_LESS(out.result.final_energy, out.result.initial_energy);
@@ -741,8 +707,6 @@ void test_off_reference()
       check(ball, icosphere(4), 0.08, 2e-3, RCO::Quad_angle_energy(2), options);
     }
 }
-
-} // namespace
 
 int main()
 {
