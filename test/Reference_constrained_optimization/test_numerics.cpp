@@ -41,11 +41,11 @@ void test_time_of_collapse()
   int finite = 0, infinite = 0;
   for(int i = 0; i < 4000; ++i)
   {
-    Matrix_2 edges, motion;
+    Matrix_2 edges;
     do
-      edges << random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1);
+      edges = filled<Matrix_2>(2, 2, random);
     while(!(edges.determinant() > 1e-3));
-    motion << random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1);
+    Matrix_2 motion = filled<Matrix_2>(2, 2, random);
     switch(i % 8)
     {
     case 1: // one corner moves
@@ -322,14 +322,18 @@ internal::Planar_problem planar_problem(const Shape& shape, double edge)
   return problem;
 }
 
+Matrix_2 jacobian(const internal::Planar_problem& p, std::size_t e, const std::vector<Vector_2>& u)
+{
+  return p.metric[e] * internal::Planar_problem::edges(u, p.triples[e]) * p.rest_inverse[e];
+}
+
 template <typename Density>
 double
 energy_of(const internal::Planar_problem& p, const Density& density, const std::vector<Vector_2>& u)
 {
   double sum = 0;
   for(std::size_t e = 0; e < p.triples.size(); ++e)
-    sum += density.value(p.metric[e] * internal::Planar_problem::edges(u, p.triples[e]) *
-                         p.rest_inverse[e]);
+    sum += density.value(jacobian(p, e, u));
   return sum;
 }
 
@@ -394,9 +398,6 @@ internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& r
   internal::Patch_samples result;
   result.barrier = internal::Drift_barrier(0.02);
   result.bound = 0.3;
-  const auto direction = [&]() {
-    return Vector_3(Vector_3(random(-1, 1), random(-1, 1), random(-1, 1)).normalized());
-  };
   const int n = patch.polygons.number_of_faces();
   result.samples.resize(4 * n);
   for(int s = 0; s < 4 * n; ++s)
@@ -404,14 +405,14 @@ internal::Patch_samples drifting_samples(const internal::Patch& patch, Random& r
     {
       result.samples[s].distance = random(0, 0.36);
       result.samples[s].bound = result.bound;
-      result.samples[s].direction = direction();
+      result.samples[s].direction = random.in_cube(1).normalized();
     }
   for(int f = 0; f < n; f += 2)
   {
     internal::Patch_samples::Projected_sample projected_sample{f, f, random(0, 0.36), 0.3};
     projected_sample.triangle = f;
     projected_sample.barycentric = Vector_3(0.2, 0.5, 0.3);
-    projected_sample.direction = direction();
+    projected_sample.direction = random.in_cube(1).normalized();
     result.projected_samples.push_back(projected_sample);
   }
   return result;
@@ -455,20 +456,17 @@ void test_newton_step(const Density& density)
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * n);
     for(std::size_t e = 0; e < problem.triples.size(); ++e)
     {
-      const auto jacobian = [&](const std::vector<Vector_2>& w) -> Matrix_2 {
-        return problem.metric[e] * internal::Planar_problem::edges(w, problem.triples[e]) *
-               problem.rest_inverse[e];
-      };
       Vector_4 g;
       Matrix_4 h;
-      density.projected_derivatives(jacobian(u), g, h);
+      density.projected_derivatives(jacobian(problem, e, u), g, h);
       Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(4, 2 * n);
       for(const int v : problem.triples[e])
         for(int d = 0; d < 2 && variable[v] >= 0; ++d)
         {
           std::vector<Vector_2> w(u);
           w[v](d) += 1;
-          chain.col(2 * variable[v] + d) = as_vector(jacobian(w) - jacobian(u));
+          chain.col(2 * variable[v] + d) =
+            as_vector(jacobian(problem, e, w) - jacobian(problem, e, u));
         }
       gradient += chain.transpose() * g;
       hessian += chain.transpose() * h * chain;
