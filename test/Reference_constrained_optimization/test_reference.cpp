@@ -82,10 +82,7 @@ void test_closest_barycentric()
     const Vector_3 q = at(t, b);
     const double distance = (q - p).norm();
     for(int k = 0; k < 40; ++k)
-    {
-      const Vector_3 s = random.barycentric();
-      RCO_CHECK_LESS_EQUAL(distance, (at(t, s) - p).norm() + 1e-7);
-    }
+      RCO_CHECK_LESS_EQUAL(distance, (at(t, random.barycentric()) - p).norm() + 1e-7);
     for(int k = 0; k < 3; ++k)
       RCO_CHECK_LESS_EQUAL(distance, (t[k] - p).norm() + 1e-12);
     if(i % 10 == 0 || i % 10 > 6)
@@ -116,12 +113,23 @@ void test_closest_in_needles()
   }
 }
 
+internal::Surface_point random_point(const internal::Reference_surface& surface, Random& random)
+{
+  const int f = random.index(surface.mesh().number_of_faces());
+  return surface.point(f, random.barycentric());
+}
+
+double distance(const internal::Surface_point& s, const Vector_3& p)
+{
+  return (s.position - p).norm();
+}
+
 // the smallest distance to any face
 double brute_force_distance(const internal::Reference_surface& surface, const Vector_3& p)
 {
   double best = std::numeric_limits<double>::infinity();
   for(int f = 0; f < surface.mesh().number_of_faces(); ++f)
-    best = (std::min)(best, (surface.closest_in_face(p, f).position - p).norm());
+    best = (std::min)(best, distance(surface.closest_in_face(p, f), p));
   return best;
 }
 
@@ -137,16 +145,13 @@ void test_closest(const Shape& shape, const std::string& name)
     // what is known already is kept if nothing is closer
     const internal::Surface_point corner =
       surface.point(random.index(surface.mesh().number_of_faces()), Vector_3::UnitX());
-    RCO_CHECK_NEAR((surface.closest(p, corner).position - p).norm(), (s.position - p).norm(),
-                   1e-12);
-    RCO_CHECK_LESS_EQUAL((surface.closest(p, s).position - p).norm(),
-                         (s.position - p).norm() + 1e-12);
+    RCO_CHECK_NEAR(distance(surface.closest(p, corner), p), distance(s, p), 1e-12);
+    RCO_CHECK_LESS_EQUAL(distance(surface.closest(p, s), p), distance(s, p) + 1e-12);
     check_surface_point(surface, s);
-    RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-12);
+    RCO_CHECK_NEAR(distance(s, p), brute_force_distance(surface, p), 1e-12);
   }
   for(std::size_t v = 0; v < shape.points.size(); v += 7)
-    RCO_CHECK_LESS_EQUAL((surface.closest(shape.points[v]).position - shape.points[v]).norm(),
-                         1e-15);
+    RCO_CHECK_LESS_EQUAL(distance(surface.closest(shape.points[v]), shape.points[v]), 1e-15);
 }
 
 // quads with opposite vertices in one place: split between these, they would have no area
@@ -194,22 +199,21 @@ void test_descend_on_convex_surfaces()
     for(int i = 0; i < 500; ++i)
     {
       // from somewhere near: the point of a face, pushed outwards and aside
-      const int f = random.index(n);
-      const internal::Surface_point from = surface.point(f, random.barycentric());
+      const internal::Surface_point from = random_point(surface, random);
       const Vector_3 normal =
-        internal::face_vector_area(surface.mesh(), surface.points(), f).normalized();
+        internal::face_vector_area(surface.mesh(), surface.points(), from.face).normalized();
       const Vector_3 p = from.position + random(0.2, 0.5) * normal + random.in_cube(0.2);
-      const internal::Surface_point s = surface.local_closest(p, f);
+      const internal::Surface_point s = surface.local_closest(p, from.face);
       check_surface_point(surface, s);
-      RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-10);
+      RCO_CHECK_NEAR(distance(s, p), brute_force_distance(surface, p), 1e-10);
     }
     // the result is no further away than the start, wherever that is
     for(int i = 0; i < 500; ++i)
     {
       const Vector_3 p = random.in_cube(1.5);
       const int f = random.index(n);
-      RCO_CHECK_LESS_EQUAL((surface.local_closest(p, f).position - p).norm(),
-                           (surface.closest_in_face(p, f).position - p).norm() + 1e-15);
+      RCO_CHECK_LESS_EQUAL(distance(surface.local_closest(p, f), p),
+                           distance(surface.closest_in_face(p, f), p) + 1e-15);
     }
   }
   // all around a sphere
@@ -218,9 +222,9 @@ void test_descend_on_convex_surfaces()
   for(int i = 0; i < 500; ++i)
   {
     const Vector_3 p = random(1.01, 2) * random.in_cube(1).normalized();
-    const internal::Surface_point s =
-      surface.local_closest(p, random.index(surface.mesh().number_of_faces()));
-    RCO_CHECK_NEAR((s.position - p).norm(), brute_force_distance(surface, p), 1e-10);
+    const int f = random.index(surface.mesh().number_of_faces());
+    RCO_CHECK_NEAR(distance(surface.local_closest(p, f), p), brute_force_distance(surface, p),
+                   1e-10);
   }
 }
 
@@ -248,16 +252,15 @@ void test_descend_on_double_sheet()
         continue;
       const Vector_3 p = from.position + Vector_3(random(-0.03, 0.03), random(-0.03, 0.03),
                                                   random(-20 * gap, 5 * gap));
-      const internal::Surface_point s = surface.local_closest(p, f);
-      RCO_CHECK(is_upper(sheet, s.face));
-      RCO_CHECK_LESS(0., surface.normal(s).z());
       wrong_by_tree += !is_upper(sheet, surface.closest(p).face);
-      // and from below
-      const int g = 2 * n * n + f;
-      RCO_CHECK(!is_upper(sheet, g));
-      const internal::Surface_point t = surface.local_closest(p, g);
-      RCO_CHECK(!is_upper(sheet, t.face));
-      RCO_CHECK_LESS(surface.normal(t).z(), 0.);
+      for(const bool from_above : {true, false})
+      {
+        const int start = from_above ? f : 2 * n * n + f;
+        RCO_CHECK_EQUAL(is_upper(sheet, start), from_above);
+        const internal::Surface_point s = surface.local_closest(p, start);
+        RCO_CHECK_EQUAL(is_upper(sheet, s.face), from_above);
+        RCO_CHECK_LESS(0., (from_above ? 1 : -1) * surface.normal(s).z());
+      }
     }
     RCO_CHECK(wrong_by_tree > 500); // what a global query does here
   }
@@ -269,8 +272,7 @@ void test_normals()
   Random random(7);
   for(int i = 0; i < 500; ++i)
   {
-    const internal::Surface_point s =
-      sphere.point(random.index(sphere.mesh().number_of_faces()), random.barycentric());
+    const internal::Surface_point s = random_point(sphere, random);
     const Vector_3 n = sphere.normal(s);
     RCO_CHECK_LESS(0.999, n.normalized().dot(s.position.normalized()));
     RCO_CHECK(n.norm() > 0.95 && n.norm() < 1 + 1e-12);
@@ -321,35 +323,31 @@ void test_is_reachable()
   Random random(9);
   for(int i = 0; i < 300; ++i)
   {
-    const internal::Surface_point from =
-      surface.point(random.index(mesh.number_of_faces()), random.barycentric());
-    const internal::Surface_point to =
-      surface.point(random.index(mesh.number_of_faces()), random.barycentric());
+    const internal::Surface_point from = random_point(surface, random);
+    const internal::Surface_point to = random_point(surface, random);
     // shortest path over vertices, by relaxation
     std::vector<double> length(shape.points.size(), std::numeric_limits<double>::infinity());
     for(int k = 0; k < 3; ++k)
       length[mesh.corner_vertex[3 * from.face + k]] =
-        (surface.corner_point(from.face, k) - from.position).norm();
+        distance(from, surface.corner_point(from.face, k));
     for(bool changes = true; changes;)
     {
       changes = false;
-      for(int c = 0; c < mesh.number_of_corners(); ++c)
-        for(const auto& e : {std::make_pair(mesh.source(c), mesh.target(c)),
-                             std::make_pair(mesh.target(c), mesh.source(c))})
+      for(int c = 0; c < mesh.number_of_corners(); ++c) // closed: each edge in both directions
+      {
+        const int v = mesh.source(c), w = mesh.target(c);
+        const double l = length[v] + (shape.points[v] - shape.points[w]).norm();
+        if(l < length[w] - 1e-15)
         {
-          const double l =
-            length[e.first] + (shape.points[e.first] - shape.points[e.second]).norm();
-          if(l < length[e.second] - 1e-15)
-          {
-            length[e.second] = l;
-            changes = true;
-          }
+          length[w] = l;
+          changes = true;
         }
+      }
     }
     double shortest = std::numeric_limits<double>::infinity();
     for(int k = 0; k < 3; ++k)
       shortest = (std::min)(shortest, length[mesh.corner_vertex[3 * to.face + k]] +
-                                        (surface.corner_point(to.face, k) - to.position).norm());
+                                        distance(to, surface.corner_point(to.face, k)));
     const bool same_face = from.face == to.face;
     RCO_CHECK_EQUAL(surface.is_reachable(from, to, 0.99 * shortest), same_face || shortest == 0);
     RCO_CHECK_EQUAL(surface.is_reachable(from, to, 1.01 * shortest),
@@ -402,7 +400,10 @@ void test_bad_references()
 }
 
 // the best of many ways from the point to the boundary of a triangle
-double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], const Vector_3& along)
+double sampled_progress(const internal::Reference_surface& surface,
+                        const Vector_3& from,
+                        int face,
+                        const Vector_3& along)
 {
   double most = 0;
   const int steps = 400;
@@ -410,7 +411,8 @@ double sampled_progress(const Vector_3& from, const Vector_3 (&corners)[3], cons
     for(int k = 0; k <= steps; ++k)
     {
       const double t = double(k) / steps;
-      const Vector_3 displacement = (1 - t) * corners[i] + t * corners[(i + 1) % 3] - from;
+      const Vector_3 displacement = (1 - t) * surface.corner_point(face, i) +
+                                    t * surface.corner_point(face, (i + 1) % 3) - from;
       if(displacement.norm() > 1e-12)
         most = (std::max)(most, displacement.normalized().dot(along));
     }
@@ -452,17 +454,10 @@ void test_face_in_direction(const std::string& name, const Shape& shape)
     const Vector_3 d = random.in_cube(1);
     const int face = internal::face_in_direction(reference, from, d);
     RCO_CHECK(around.count(face) > 0);
-    double most = 0, own = 0;
+    double most = 0;
     for(const int f : around)
-    {
-      const Vector_3 corners[3] = {reference.corner_point(f, 0), reference.corner_point(f, 1),
-                                   reference.corner_point(f, 2)};
-      const double progress = sampled_progress(from.position, corners, d);
-      most = (std::max)(most, progress);
-      if(f == face)
-        own = progress;
-    }
-    RCO_CHECK_NEAR(own, most, 1e-4 * d.norm());
+      most = (std::max)(most, sampled_progress(reference, from.position, f, d));
+    RCO_CHECK_NEAR(sampled_progress(reference, from.position, face, d), most, 1e-4 * d.norm());
     if(most == 0)
       RCO_CHECK_EQUAL(face, from.face);
   };
