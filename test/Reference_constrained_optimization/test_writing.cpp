@@ -50,6 +50,16 @@ struct Movable_mesh : Located_shape
            same_bits(state.vertices[v].on_reference.barycentric,
                      vertices[v].on_reference.barycentric);
   }
+  // defects are repaired at one vertex, and another keeps its place
+  void check_repair(int restored, int kept)
+  {
+    const Vertices gained = state.vertices;
+    Sequential_defect_repair repair(state, start);
+    repair.run();
+    RCO_CHECK(repair.has_restored_vertices());
+    RCO_CHECK_EQUAL(defects().number, 0u);
+    RCO_CHECK(is_at(restored, start) && is_at(kept, gained));
+  }
 };
 
 // Defects at the end are repaired locally.
@@ -60,11 +70,9 @@ void test_defect_repair()
     const Scope s("faces that are inverted");
     Movable_mesh mesh(triangles);
     mesh.move(id(3, 3), 1.6, 0.1);
-    Sequential_defect_repair repair(mesh.state, mesh.start);
+    mesh.move(id(9, 9), 0.2, 0.1);
     RCO_CHECK_LESS(0u, mesh.defects().number);
-    repair.run();
-    RCO_CHECK(repair.has_restored_vertices());
-    RCO_CHECK(mesh.is_at(id(3, 3), mesh.start));
+    mesh.check_repair(id(3, 3), id(9, 9));
   }
   // a face of the input with an angle far below that of the others leaves them free to move
   Shape thin = triangles;
@@ -79,13 +87,8 @@ void test_defect_repair()
     RCO_CHECK_EQUAL(mesh.defects().number, 0u);
     mesh.move(id(4, 6), 0.2, 0);
     mesh.move(id(10, 10), 0.2, 0.1);
-    const Vertices gained = mesh.state.vertices;
     RCO_CHECK_LESS(0u, mesh.defects().number);
-    Sequential_defect_repair repair(mesh.state, mesh.start);
-    repair.run();
-    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
-    RCO_CHECK(mesh.is_at(id(3, 6), mesh.start));
-    RCO_CHECK(mesh.is_at(id(10, 10), gained));
+    mesh.check_repair(id(3, 6), id(10, 10));
   }
   {
     const Scope s("an angle that is slightly smaller");
@@ -94,12 +97,8 @@ void test_defect_repair()
     const double smallest = mesh.defects().smallest_angle;
     mesh.move(id(1, 1), 1e-9, 0);
     RCO_CHECK_LESS(mesh.defects().smallest_angle, smallest);
-    const Vertices gained = mesh.state.vertices;
-    Sequential_defect_repair repair(mesh.state, mesh.start);
-    repair.run();
+    mesh.check_repair(id(1, 1), id(8, 8));
     RCO_CHECK_EQUAL(mesh.defects().smallest_angle, smallest);
-    RCO_CHECK(mesh.is_at(id(1, 1), mesh.start));
-    RCO_CHECK(mesh.is_at(id(8, 8), gained));
   }
   {
     const Scope s("a quad that is slightly non-convex");
@@ -107,13 +106,7 @@ void test_defect_repair()
     mesh.move(id(3, 3), 0.5 + 1e-12, 0.5 + 1e-12);
     mesh.move(id(9, 9), 0.2, 0.1);
     RCO_CHECK_EQUAL(mesh.defects().number, 1u);
-    const Vertices gained = mesh.state.vertices;
-    Sequential_defect_repair repair(mesh.state, mesh.start);
-    repair.run();
-    RCO_CHECK(repair.has_restored_vertices());
-    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
-    RCO_CHECK(mesh.is_at(id(3, 3), mesh.start));
-    RCO_CHECK(mesh.is_at(id(9, 9), gained));
+    mesh.check_repair(id(3, 3), id(9, 9));
   }
   {
     const Scope s("an energy that has risen");

@@ -155,7 +155,7 @@ void optimize(const FaceRange& range,
   if(!features.is_mechanical.empty() && is_same)
     constrain_tips(copy.mesh, surface, features.is_mechanical, constraints);
   state.is_free = free_vertices(copy.mesh, constraints);
-  state.is_line = interior_lines(copy.mesh, constraints);
+  state.is_line = constraints.is_line;
   locate_on_reference<ConcurrencyTag>(copy.points, surface, state, result, &interruption,
                                       distance_of_origin);
   check_distances(copy.points, state, unit);

@@ -84,17 +84,6 @@ inline std::vector<char> free_vertices(const Indexed_mesh& mesh, const Constrain
   return is_free;
 }
 
-// per corner, whether its edge is constrained and not at the border; empty if none is
-inline std::vector<char> interior_lines(const Indexed_mesh& mesh, const Constraints& constraints)
-{
-  std::vector<char> is_line(mesh.number_of_corners(), 0);
-  for(int c = 0; c < mesh.number_of_corners(); ++c)
-    is_line[c] = constraints.is_line[c] && mesh.opposite[c] >= 0;
-  if(std::find(is_line.begin(), is_line.end(), 1) == is_line.end())
-    is_line.clear();
-  return is_line;
-}
-
 inline double cosine_between(const Vector_3& a, const Vector_3& b)
 {
   const double lengths = a.norm() * b.norm();

@@ -54,9 +54,9 @@ exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& loc
 }
 
 // Decides whether an accepted patch is committed. Another patch of the round may have moved faces across
-// its boundary since the acceptance test: folds and creases there are counted again, and shared stencils are evaluated
-// again. Only the vertices of boundary faces and shared stencils are exchanged; `commit_inside()` has to
-// follow.
+// its boundary since the acceptance test: folds and creases there are counted again, and shared stencils are
+// evaluated again. Only the vertices of boundary faces and shared stencils are exchanged; `commit_inside()`
+// has to follow.
 inline void commit_boundary(Optimization_state& state, Solved_patch& s)
 {
   if(!s.decision.accepted)

@@ -118,11 +118,10 @@ public:
   // the energy of the elements at rest
   double rest_energy() const { return m_rest_energy; }
 
-  // the sums that steps may not lower, raise, or change by much
+  // the sums that steps may not lower, or not change by much
   void update_sums()
   {
     state.angle_gain = sum_of_angles() - m_initial_angles;
-    state.number_of_creases = int(number_of_creases());
     if(state.bounds_volume())
       state.volume_change = volume_of_mechanical_parts(state) - m_initial_volume;
   }
@@ -232,24 +231,6 @@ private:
     for(const double s : sums)
       sum += s;
     return sum;
-  }
-
-  std::size_t number_of_creases() const
-  {
-    const Indexed_mesh& mesh = state.mesh;
-    const auto vertex = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
-    const int n = mesh.number_of_faces();
-    std::vector<Vector_3> normals(n);
-    for_each_block<ConcurrencyTag>(n, [&](int begin, int end, int) {
-      for(int f = begin; f < end; ++f)
-        normals[f] = face_normal(mesh, vertex, f);
-    });
-    std::size_t number = 0;
-    for(int c = 0; c < mesh.number_of_corners(); ++c)
-      if(mesh.opposite[c] > c && !state.is_on_line(c))
-        number +=
-          is_crease(normals[mesh.corner_face[c]], normals[mesh.corner_face[mesh.opposite[c]]]);
-    return number;
   }
 
   Drift_barrier make_barrier() const

@@ -30,6 +30,8 @@ public:
   void add(const std::vector<int>& faces)
   {
     const Indexed_mesh& mesh = m_state.mesh;
+    if(m_vertices.empty())
+      m_number_of_creases = m_state.number_of_creases;
     for(const int f : faces)
     {
       if(!m_has_face[f])
@@ -57,6 +59,8 @@ public:
 
   void restore()
   {
+    if(!m_vertices.empty())
+      m_state.number_of_creases = m_number_of_creases;
     for(const std::pair<int, Located_vertex>& v : m_vertices)
       m_state.vertices[v.first] = v.second;
     m_shape_bound.restore(m_snapshot);
@@ -66,6 +70,7 @@ public:
 private:
   Optimization_state& m_state;
   Shape_bound& m_shape_bound;
+  int m_number_of_creases = 0;
   std::vector<std::pair<int, Located_vertex>> m_vertices;
   Shape_bound::Snapshot m_snapshot;
   std::vector<char> m_has_vertex, m_has_face;

@@ -84,7 +84,7 @@ struct Optimization_state
   double volume_change = 0;
   bool bounds_volume() const { return std::isfinite(largest_volume_change); }
 
-  // per corner: whether its edge is constrained, as feature lines are; empty if none is
+  // per corner: whether its edge is constrained, as feature lines are, or at the border; none if empty
   std::vector<char> is_line = {};
   bool is_on_line(int c) const { return !is_line.empty() && is_line[c]; }
 

@@ -42,7 +42,7 @@ struct Patch
   bool slides(int v) const { return !line_neighbours.empty() && line_neighbours[v][0] >= 0; }
   // per face, and per corner, see Optimization_state; empty if no normal deviation is bounded
   std::vector<char> bounds_normal_deviation, is_smooth;
-  std::vector<char> is_line; // per corner, see Optimization_state; empty if none is
+  std::vector<char> is_line; // per corner, see Optimization_state
   bool is_on_line(int c) const { return !is_line.empty() && is_line[c]; }
   std::vector<Element_set::Element> elements; // in local vertices
   std::vector<int> element_begin;             // per face: its first element; and their number
