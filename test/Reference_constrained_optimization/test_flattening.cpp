@@ -489,6 +489,9 @@ struct Placed_shape : Located_shape
                const std::function<bool(int)>& face_is_allowed)
     : Located_shape(shape, reference)
   {
+    // the reference keeps its own orientation
+    if(surface.normal(surface.point(0, Vector_3::Constant(1. / 3))).dot(surface.face_normal(0)) < 0)
+      surface.reverse(std::vector<char>(surface.mesh().number_of_faces(), 1));
     for(std::size_t v = 0; v < shape.points.size(); ++v)
     {
       double best = std::numeric_limits<double>::infinity();
