@@ -157,8 +157,40 @@ void test_inversion()
   RCO_CHECK_LESS(0u, scene.measure(density).flips);
 }
 
+// Vertices beside the ridge of a roof do not reach it where that would make its edges creases.
+void test_creases()
+{
+  const auto roof = [](const Vector_3& p) {
+    return Vector_3(p.x(), p.y(), -1.3 * std::abs(p.x() - 0.5));
+  };
+  const auto beside = [&](const Vector_3& p) {
+    return roof(p.x() == 0.5 ? Vector_3(0.56, p.y(), 0) : p);
+  };
+  Scene scene(deformed(plane_grid(8, 8), beside), deformed(plane_grid(8, 8), roof));
+  Mover_to mover{{}, scene.surface};
+  for(const internal::Located_vertex& v : scene.patch.located)
+    mover.ways.push_back(std::abs(v.position.x() - 0.53) < 0.04
+                           ? Vector_3(0.5, v.position.y(), 0) - v.position
+                           : Vector_3(0, 0, 0));
+  const RCO::Exponential_MIPS_density density(1);
+  RCO_CHECK_EQUAL(scene.measure(density).creases, 0u);
+  const auto creases_by = [&](auto backtracking) {
+    Scene moved(deformed(plane_grid(8, 8), beside), deformed(plane_grid(8, 8), roof));
+    RCO_CHECK(backtracking.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true)
+                .accepted);
+    for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
+      moved.state.vertices[scene.patch.vertices[v]] = backtracking.candidate()[v];
+    return moved.measure(density).creases;
+  };
+  RCO_CHECK_LESS(0u, creases_by(internal::Backtracking_with<std::tuple<>, std::tuple<>>()));
+  typedef std::tuple<internal::Edge_creases> Only;
+  RCO_CHECK_EQUAL(creases_by(internal::Backtracking_with<std::tuple<>, Only>()), 0u);
+}
+
 int main()
 {
+  run_test("creases", test_creases);
+
   run_test("the invariants of the package",
            [] { test_random_steps<internal::Backtracking>(false); });
   Short_steps::limit = 0.02;
