@@ -62,15 +62,22 @@ struct Located_shape
     return result;
   }
 
+  // the faces f for which is_in(f) is true
+  template <typename Is_in>
+  internal::Patch patch_of_faces(const Is_in& is_in) const
+  {
+    std::vector<int> faces;
+    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
+      if(is_in(f))
+        faces.push_back(f);
+    return internal::Patch_builder(copy.mesh).build(faces, state);
+  }
   // the faces whose first vertex is at a place for which is_in(place) is true
   template <typename Is_in>
   internal::Patch patch(const Is_in& is_in) const
   {
-    std::vector<int> faces;
-    for(int f = 0; f < copy.mesh.number_of_faces(); ++f)
-      if(is_in(copy.points[copy.mesh.corner_vertex[copy.mesh.face_begin[f]]]))
-        faces.push_back(f);
-    return internal::Patch_builder(copy.mesh).build(faces, state);
+    return patch_of_faces(
+      [&](int f) { return is_in(copy.points[copy.mesh.corner_vertex[copy.mesh.face_begin[f]]]); });
   }
   internal::Patch whole_patch() const
   {

@@ -87,12 +87,13 @@ check_vertices(const Shape& before, const Shape& after, const std::vector<char>&
   return number_free;
 }
 
-// defects and creases do not increase, nor does the energy unless a defect was repaired
+// defects, creases and self-intersections do not increase, nor does the energy unless a defect was repaired
 inline void check_progress(const RCO::Result& r)
 {
   RCO_CHECK(std::isfinite(r.initial_energy) && std::isfinite(r.final_energy));
   RCO_CHECK_LESS_EQUAL(defects_after(r), defects_before(r));
   RCO_CHECK_LESS_EQUAL(r.number_of_creases, r.initial_number_of_creases);
+  RCO_CHECK_LESS_EQUAL(r.number_of_self_intersections, r.initial_number_of_self_intersections);
   if(defects_after(r) == defects_before(r))
     RCO_CHECK_LESS_EQUAL(r.final_energy, r.initial_energy);
 }
@@ -136,6 +137,7 @@ void check_result(const Shape& before,
   const RCO::Orientation_defects turned = RCO::orientation_defects(mesh, reference);
   RCO_CHECK_EQUAL(turned.number_of_flips, r.number_of_flips);
   RCO_CHECK_EQUAL(turned.number_of_fold_edges, r.number_of_fold_edges);
+  RCO_CHECK_EQUAL(RCO::number_of_self_intersecting_pairs(mesh), r.number_of_self_intersections);
   if(r.number_of_feature_edges == 0 && CGAL::is_triangle_mesh(mesh))
     RCO_CHECK_EQUAL(number_of_creases(make_shape(mesh)), r.number_of_creases);
 }

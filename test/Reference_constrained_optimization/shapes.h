@@ -332,8 +332,9 @@ inline Shape cube_sphere(int n)
 }
 
 // Two parallel sheets of n times n squares, `gap` apart and closed at the rim; `wave` is the height
-// of a wave that both follow. The first half of the vertices is the upper sheet.
-inline Shape double_sheet(int n, double gap, double wave = 0)
+// of a wave that both follow, and `taper` the part of the gap that is lost at the other end, as in a knife. The
+// first half of the vertices is the upper sheet.
+inline Shape double_sheet(int n, double gap, double wave = 0, double taper = 0)
 {
   Shape s;
   const auto height = [&](double x) { return wave * std::sin(2 * pi * 2 * x); };
@@ -342,7 +343,7 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
       for(int i = 0; i <= n; ++i)
       {
         const double x = double(i) / n;
-        s.add(x, double(j) / n, height(x) - side * gap);
+        s.add(x, double(j) / n, height(x) - side * gap * (1 - taper * x));
       }
   const int m = (n + 1) * (n + 1);
   const auto at = [&](int i, int j) { return j * (n + 1) + i; };
@@ -360,6 +361,17 @@ inline Shape double_sheet(int n, double gap, double wave = 0)
     side(at(0, i + 1), at(0, i));
   }
   return s;
+}
+
+// A sheet with pleats, each folded by an angle: n squares to each of its flat parts
+inline Shape pleats(int number, int n, double degrees)
+{
+  const double slope = 0.5 * degrees * pi / 180, length = 1. / n;
+  return grid(2 * number * n, 3 * n, Diagonals::alternating, [&](int i, int j) {
+    const int part = i / n, rest = i % n;
+    const double height = (part % 2 == 0 ? rest : n - rest) * length;
+    return Vector_3(i * length * std::cos(slope), j * length, height * std::sin(slope));
+  });
 }
 
 // whether a face is on the first sheet of double_sheet()

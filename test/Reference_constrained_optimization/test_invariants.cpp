@@ -9,7 +9,9 @@
 #include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/on_surface/tangent_step.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/near_sheets.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/backtracking.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 
@@ -90,7 +92,7 @@ void test_random_steps(bool has_short_steps)
     Random random(trial);
     Scene scene(scrambled(sphere, 0.35, 10 + trial, onto_sphere), sphere);
     const auto before = scene.measure(density);
-    scene.state.largest_number_of_creases = scene.state.number_of_creases = int(before.creases);
+    scene.state.counts.creases = {int(before.creases), int(before.creases)};
     internal::Step_limits limits;
     limits.density = before.largest_density;
     limits.cosine = before.largest_cosine;
@@ -187,9 +189,54 @@ void test_creases()
   RCO_CHECK_EQUAL(creases_by(internal::Backtracking_with<std::tuple<>, Only>()), 0u);
 }
 
+// Vertices of two sheets that are closer than their faces are from them do not move so that faces intersect,
+// whether both sheets are in the patch or only one.
+void test_intersections()
+{
+  const Shape sheets = double_sheet(12, 0.002, 0.08);
+  const RCO::Exponential_MIPS_density density(1);
+  const auto pairs_by = [&](auto backtracking, bool has_both, int seed) {
+    Scene scene(sheets, sheets);
+    scene.state.set_near_sheets(internal::near_sheets(scene.surface, 1));
+    scene.state.counts.intersections = {0, 0};
+    scene.patch = scene.patch_of_faces([&](int f) { return has_both || is_upper(sheets, f); });
+    scene.samples = scene.shape_bound.gather(scene.state, scene.patch);
+    Mover_to mover{{}, scene.surface};
+    Random random(seed);
+    for(int v = 0; v < int(scene.patch.vertices.size()); ++v)
+      mover.ways.push_back(scene.patch.is_free[v]
+                             ? Vector_3(random(-0.03, 0.03), random(-0.03, 0.03), 0)
+                             : Vector_3::Zero());
+    if(backtracking
+         .decide(scene.patch, scene.samples, scene.state, mover, density, internal::Step_limits(),
+                 true)
+         .accepted)
+      for(std::size_t v = 0; v < scene.patch.vertices.size(); ++v)
+        scene.state.vertices[scene.patch.vertices[v]] = backtracking.candidate()[v];
+    double moved = 0;
+    for(std::size_t v = 0; v < scene.copy.points.size(); ++v)
+    {
+      moved += (scene.copy.points[v] - scene.state.vertices[v].position).norm();
+      scene.copy.points[v] = scene.state.vertices[v].position;
+    }
+    RCO_CHECK_LESS(0.1, moved);
+    return internal::self_intersections(scene.copy.mesh, scene.copy.points).size();
+  };
+  typedef std::tuple<internal::Face_intersections> Only;
+  for(const bool has_both : {false, true})
+    for(int seed = 0; seed < 5; ++seed)
+    {
+      RCO_CHECK_LESS(
+        0u, pairs_by(internal::Backtracking_with<std::tuple<>, std::tuple<>>(), has_both, seed));
+      RCO_CHECK_EQUAL(pairs_by(internal::Backtracking_with<std::tuple<>, Only>(), has_both, seed),
+                      0u);
+    }
+}
+
 int main()
 {
   run_test("creases", test_creases);
+  run_test("intersections", test_intersections);
 
   run_test("the invariants of the package",
            [] { test_random_steps<internal::Backtracking>(false); });

@@ -6,14 +6,17 @@
 
 #include "checks.h"
 #include "deformations.h"
+#include "meshes.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Frame.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/dihedral_angles.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/point_index.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/split_mesh.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/self_intersections.h>
 
 #include <limits>
 
@@ -222,8 +225,39 @@ void test_indexed_meshes()
   }
 }
 
+// The same pairs as CGAL finds, also on planes whose coordinates are rounded.
+void test_self_intersections()
+{
+  const Eigen::Matrix3d rotation =
+    (Eigen::AngleAxisd(0.7, Vector_3::UnitX()) * Eigen::AngleAxisd(0.4, Vector_3::UnitZ()))
+      .toRotationMatrix();
+  const Deformation anywhere = [](const Vector_3& p) { return p; };
+  std::size_t number = 0;
+  const auto test = [&](const std::string& name, const Shape& shape) {
+    const Scope scope(name);
+    const std::size_t pairs = internal::self_intersections(indexed(shape), shape.points).size();
+    RCO_CHECK_EQUAL(pairs, RCO::number_of_self_intersecting_pairs(mesh_of(shape)));
+    number += pairs;
+  };
+  for(int seed = 0; seed < 4; ++seed)
+    for(const double amount : {0.4, 1., 3.})
+    {
+      test("a sphere", scrambled(icosphere(2), amount, seed, anywhere));
+      test("quads", scrambled(torus(16, 8, 1, 0.4, true), amount, seed, anywhere));
+      test("a plane", scrambled(plane_grid(7, 7), amount, seed, onto_plane));
+      test("a plane that is turned",
+           rotated(scrambled(plane_grid(7, 7), amount, seed, onto_plane), rotation));
+      test("two sheets", scrambled(double_sheet(7, 0.02), amount, seed, anywhere));
+    }
+  RCO_CHECK_LESS(1000u, number);
+  test("fans", rotated(closed_cylinder(60, 2, 1, 1), rotation));
+  test("a copy in the same place", joined(icosphere(1), icosphere(1)));
+  test("faces of no area", collapsed(icosphere(1), {0, 12}));
+}
+
 int main()
 {
+  run_test("self-intersections", test_self_intersections);
   run_test("frame", test_frame);
   run_test("point index", test_point_index);
   run_test("surface metric", test_surface_metric);

@@ -538,6 +538,38 @@ void test_thin_sheet()
   }
 }
 
+// Sheets a tenth of an edge apart, pleats, a blade and fingers that nearly touch: nothing gets worse, and as
+// long as nothing intersects nothing will.
+void test_close_sheets()
+{
+  const double edge = 1. / 16;
+  const Shape finger = scaled(icosphere(3), 0.3, 0.3, 1);
+  const std::vector<std::pair<std::string, Shape>> shapes = {
+    {"close sheets", double_sheet(16, 0.1 * edge, 0.04)},
+    {"a blade", double_sheet(16, edge, 0.04, 0.98)},
+    {"pleats of 173 degrees", pleats(4, 6, 173)},
+    {"fins",
+     deformed(pleats(4, 6, 160),
+              [](const Vector_3& p) { return Vector_3(p.x(), p.y(), (std::max)(p.z(), 0.5)); })},
+    {"fingers", joined(finger, finger, Vector_3(0.605, 0.01, 0.02))}};
+  int improved = 0;
+  for(const std::pair<std::string, Shape>& s : shapes)
+  {
+    const Scope scope(s.first);
+    for(int seed = 0; seed < 2; ++seed)
+    {
+      Mesh mesh = mesh_of(s.second);
+      const Mesh reference = mesh;
+      const RCO::Result r = improve_angles(
+        mesh, reference, params::detect_features(false).number_of_iterations(10).random_seed(seed));
+      RCO_CHECK_EQUAL(r.initial_number_of_self_intersections, 0u);
+      improved += r.final_energy < r.initial_energy;
+      check_result(s.second, mesh, reference, r);
+    }
+  }
+  RCO_CHECK_EQUAL(improved, 8); // nothing can be gained between the folds of the pleats
+}
+
 void test_determinism()
 {
   const Shape regular = torus(40, 16), rough = scrambled(regular, 0.3, 12, onto_torus(1, 0.4));
@@ -782,6 +814,7 @@ int main()
   run_test("constraints", test_constraints);
   run_test("degenerate faces", test_degenerate_faces);
   run_test("thin sheet", test_thin_sheet);
+  run_test("close sheets", test_close_sheets);
   run_test("determinism", test_determinism);
   run_test("nothing to gain", test_nothing_to_gain);
   run_test("endings", test_endings);

@@ -12,6 +12,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/reference/Polyline_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/face_in_direction.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/local_bounds.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/near_sheets.h>
 
 #include <limits>
 #include <set>
@@ -626,6 +627,40 @@ void test_local_bounds()
   }
 }
 
+// Triangles near which R has another sheet: on both sides of a thin sheet, towards the edge of a blade, between
+// components that nearly touch, and nowhere on a sphere.
+void test_near_sheets()
+{
+  const auto part = [](const Shape& shape, double scale, const auto& is_in) {
+    const internal::Reference_surface surface(copy_of(shape));
+    const std::vector<char> near = internal::near_sheets(surface, scale);
+    double number = 0, sum = 0;
+    for(int f = 0; f < int(shape.faces.size()); ++f)
+      if(is_in(Vector_3((shape.points[shape.faces[f][0]] + shape.points[shape.faces[f][1]] +
+                         shape.points[shape.faces[f][2]]) /
+                        3)))
+      {
+        ++number;
+        sum += near.empty() ? 0 : near[f];
+      }
+    return sum / number;
+  };
+  const auto everywhere = [](const Vector_3&) { return true; };
+  const auto left = [](const Vector_3& p) { return p.x() < 0.4; };
+  const auto right = [](const Vector_3& p) { return p.x() > 0.6; };
+  const double edge = 1. / 10;
+  RCO_CHECK_EQUAL(part(icosphere(2), 1, everywhere), 0.);
+  RCO_CHECK_EQUAL(part(double_sheet(10, 2 * edge), 1, everywhere), 0.);
+  RCO_CHECK_LESS(0.8, part(double_sheet(10, 0.2 * edge), 1, everywhere)); // not at the rim
+  RCO_CHECK_EQUAL(part(double_sheet(10, 0.5 * edge, 0, 0.9), 1, left), 0.);
+  RCO_CHECK_LESS(0.8, part(double_sheet(10, 0.5 * edge, 0, 0.9), 1, right));
+  const Shape balls = joined(icosphere(3), icosphere(3), Vector_3(2.01, 0, 0));
+  RCO_CHECK_LESS(0., part(balls, 1, right));
+  RCO_CHECK_LESS(part(balls, 1, right), 0.1);
+  RCO_CHECK_LESS(part(balls, 1, right), part(balls, 4, right));
+  RCO_CHECK_EQUAL(part(balls, 1, [](const Vector_3& p) { return std::abs(p.x() - 1) > 0.5; }), 0.);
+}
+
 int main()
 {
   run_test("closest_barycentric", test_closest_barycentric);
@@ -655,5 +690,6 @@ int main()
   run_test("fading lines", test_fading_lines);
   run_test("noisy parts", test_noisy_parts);
   run_test("local bounds", test_local_bounds);
+  run_test("near sheets", test_near_sheets);
   return report();
 }

@@ -10,6 +10,8 @@
 
 #include <CGAL/Random.h>
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/near_sheets.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Round_solver.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/Vertex_step_sizes.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/patch_partition.h>
@@ -205,8 +207,59 @@ void test_round(internal::Moves moves, const Shape& start, const Shape& regular)
               !same_bits(old[v].position, scene.state.vertices[v].position));
 }
 
+// Two patches of a round, each on one of two close sheets, that are both accepted: they are committed only as
+// far as they do not intersect.
+void test_facing_patches()
+{
+  const RCO::Exponential_MIPS_density density(1);
+  const Shape regular = double_sheet(12, 0.01, 0.04);
+  int committed = 0;
+  for(int seed = 0; seed < 8; ++seed)
+  {
+    const Scope scope("seed " + std::to_string(seed));
+    Shape start = regular; // both sheets alike
+    Random random(seed);
+    const int half = int(start.points.size()) / 2;
+    for(int v = 0; v < half; ++v)
+    {
+      const double x = start.points[v].x(), y = start.points[v].y();
+      if(x > 0.1 && x < 0.9 && y > 0.1 && y < 0.9)
+        for(const int w : {v, v + half})
+          start.points[w].y() = y + (w == v ? random(-0.03, 0.03) : start.points[v].y() - y);
+    }
+    Located_shape scene(start, regular);
+    scene.state.set_near_sheets(internal::near_sheets(scene.surface, 1));
+    const auto intersections = [&]() {
+      std::vector<Vector_3> points;
+      for(const internal::Located_vertex& v : scene.state.vertices)
+        points.push_back(v.position);
+      return int(internal::self_intersections(scene.copy.mesh, points).size());
+    };
+    const int before = intersections();
+    scene.state.counts.intersections = {before, before};
+    Recorder recorder;
+    RCO::Result result;
+    internal::Interruption interruption(recorder, std::chrono::steady_clock::now(), 1e9);
+    internal::Round_solver<CGAL::Sequential_tag, Recorder> solver(
+      scene.state, internal::Loop_parameters(), recorder, result, interruption);
+    solver.initialize(internal::Shape_bound());
+    internal::Solver_settings settings;
+    settings.limits.density = 1e300;
+    settings.bad_density = 1e300;
+    settings.strain_regularization = internal::largest_regularization;
+    std::vector<std::vector<int>> patches(2);
+    for(int f = 0; f < scene.copy.mesh.number_of_faces(); ++f)
+      patches[is_upper(regular, f) ? 0 : 1].push_back(f);
+    RCO_CHECK(solver.solve(patches, internal::Moves::on_surface, density, settings));
+    committed += recorder.accepted;
+    RCO_CHECK_LESS_EQUAL(intersections(), before);
+  }
+  RCO_CHECK_LESS(8, committed);
+}
+
 int main()
 {
+  run_test("facing patches", test_facing_patches);
   run_test("vertex step sizes", test_vertex_step_sizes);
   const Shape ring = torus(32, 16);
   for(const internal::Moves moves :

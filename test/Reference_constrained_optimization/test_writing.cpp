@@ -34,15 +34,16 @@ struct Movable_mesh : Located_shape
   {
     state.is_free.assign(start.size(), 1);
   }
-  void move(int v, double dx, double dy)
+  void move(int v, double dx, double dy, double dz = 0)
   {
-    const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, 0);
+    const Vector_3 p = state.vertices[v].position + Vector_3(dx, dy, dz);
     state.vertices[v].on_reference = surface.closest(p);
     state.vertices[v].position = p;
   }
-  auto defects() const
+  auto defects() const { return defects_of(state.vertices); }
+  internal::Output_defects defects_of(const Vertices& vertices) const
   {
-    return internal::find_output_defects<CGAL::Sequential_tag>(state, state.vertices);
+    return internal::find_output_defects<CGAL::Sequential_tag>(state, vertices);
   }
   bool is_at(int v, const Vertices& vertices) const
   {
@@ -54,10 +55,12 @@ struct Movable_mesh : Located_shape
   void check_repair(int restored, int kept)
   {
     const Vertices gained = state.vertices;
-    Sequential_defect_repair repair(state, start);
+    const internal::Output_defects initial = defects_of(start);
+    Sequential_defect_repair repair(state, start, initial);
     repair.run();
     RCO_CHECK(repair.has_restored_vertices());
     RCO_CHECK_EQUAL(defects().number, 0u);
+    RCO_CHECK_EQUAL(defects().intersections.size(), 0u);
     RCO_CHECK(is_at(restored, start) && is_at(kept, gained));
   }
 };
@@ -90,6 +93,19 @@ void test_defect_repair()
     mesh.check_repair(id(3, 6), id(10, 10));
   }
   {
+    const Scope s("faces that intersect");
+    const int half = int(thin.points.size());
+    Movable_mesh mesh(joined(thin, thin));
+    for(int v = 0; v < half; ++v)
+      mesh.move(half + v, 0, 0, 0.05);
+    mesh.start = mesh.state.vertices;
+    mesh.move(half + id(3, 3), 0, 0, -0.1);
+    mesh.move(half + id(9, 9), 0.2, 0.1);
+    RCO_CHECK_EQUAL(mesh.defects().number, 0u);
+    RCO_CHECK_LESS(0u, mesh.defects().intersections.size());
+    mesh.check_repair(half + id(3, 3), half + id(9, 9));
+  }
+  {
     const Scope s("an angle that is slightly smaller");
     Movable_mesh mesh(thin);
     mesh.move(id(8, 8), 0.2, 0.1);
@@ -113,7 +129,8 @@ void test_defect_repair()
     mesh.move(id(9, 9), 0.1, 0);
     mesh.move(id(5, 4), 0.2, 0.1);
     const Vertices moved = mesh.state.vertices;
-    Sequential_defect_repair repair(mesh.state, mesh.start);
+    const internal::Output_defects initial = mesh.defects_of(mesh.start);
+    Sequential_defect_repair repair(mesh.state, mesh.start, initial);
     repair.run();
     RCO_CHECK(!repair.has_restored_vertices());
     const auto density = RCO::Minimum_angle_energy().density();

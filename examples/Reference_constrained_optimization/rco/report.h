@@ -112,6 +112,8 @@ inline void print_json(std::ostream& out, const Options& options, const Report& 
       << ",\n  \"after\": " << json_object(report.after)
       << ",\n  \"initial_number_of_creases\": " << r.initial_number_of_creases
       << ",\n  \"number_of_creases\": " << r.number_of_creases
+      << ",\n  \"initial_number_of_self_intersections\": " << r.initial_number_of_self_intersections
+      << ",\n  \"number_of_self_intersections\": " << r.number_of_self_intersections
       << ",\n  \"initial_energy\": " << json_number(r.initial_energy)
       << ",\n  \"final_energy\": " << json_number(r.final_energy)
       << ",\n  \"drift_bound\": " << json_number(r.drift_bound)
@@ -148,9 +150,14 @@ inline void print_table(std::ostream& out, const Options& options, const Report&
     out << std::setprecision(a.digits) << std::left << std::setw(label) << a.label << std::right
         << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
   }
-  out << std::left << std::setw(label) << "edges beyond 90 degrees, but for feature edges"
-      << std::right << std::setw(column) << r.initial_number_of_creases << std::setw(column)
-      << r.number_of_creases << '\n';
+  const auto print_counts = [&](const char* text, std::size_t before, std::size_t after) {
+    out << std::left << std::setw(label) << text << std::right << std::setw(column) << before
+        << std::setw(column) << after << '\n';
+  };
+  print_counts("edges beyond 90 degrees, but for feature edges", r.initial_number_of_creases,
+               r.number_of_creases);
+  print_counts("self-intersecting pairs of faces", r.initial_number_of_self_intersections,
+               r.number_of_self_intersections);
   if(options.detects_features)
     out << std::left << std::setw(label) << "feature edges detected" << std::right
         << std::setw(column) << r.number_of_feature_edges << '\n';

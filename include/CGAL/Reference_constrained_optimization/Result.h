@@ -80,6 +80,11 @@ struct Result
   std::size_t initial_number_of_creases = 0;
   std::size_t number_of_creases = 0; ///< the same at the end, not more.
 
+  /// pairs of faces at the start that intersect other than in a common vertex or edge; see
+  /// `number_of_self_intersecting_pairs()`.
+  std::size_t initial_number_of_self_intersections = 0;
+  std::size_t number_of_self_intersections = 0; ///< the same at the end, not more.
+
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;
   std::size_t number_of_free_vertices = 0; ///< vertices that were allowed to move.

@@ -16,6 +16,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/reading/reference_lines.h>
 #include <CGAL/Reference_constrained_optimization/internal/reading/sliding_vertices.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/feature_detection.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/near_sheets.h>
 #include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 #include <CGAL/Reference_constrained_optimization/internal/stages/optimize_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/interruption.h>
@@ -187,6 +188,10 @@ void optimize(const FaceRange& range,
         (std::max)(result.largest_initial_distance,
                    unit * (state.vertices[v].on_reference.position - copy.points[v]).norm());
   round_to_user_coordinates(frame, state);
+  // faces of a coarse mesh bridge a longer distance
+  state.set_near_sheets(near_sheets(
+    surface,
+    (std::max)(1., mean_edge_length(copy.mesh, copy.points) / surface.mean_edge_length())));
   const std::vector<Located_vertex> start_vertices = state.vertices;
   result.times.setup = seconds_since(start);
 
@@ -201,14 +206,18 @@ void optimize(const FaceRange& range,
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
   result.initial_number_of_creases = initial.creases;
-  state.largest_number_of_creases = state.number_of_creases = int(initial.creases);
+  const Output_defects initial_defects = find_output_defects<ConcurrencyTag>(state, start_vertices);
+  result.initial_number_of_self_intersections = initial_defects.intersections.size();
+  const auto bounded_number = [](std::size_t n) { return Bounded_number{int(n), int(n)}; };
+  state.counts.creases = bounded_number(initial.creases);
+  state.counts.intersections = bounded_number(initial_defects.intersections.size());
 
   Loop_parameters framed_parameters = loop_parameters;
   framed_parameters.drift_bound /= unit;
   const auto finish = [&]() {
     round_to_user_coordinates(frame, state);
     Global_measure final = measure_all();
-    Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices);
+    Defect_repair<ConcurrencyTag> defect_repair(state, start_vertices, initial_defects);
     // where clusters were opened and the mean did not rise again; a repair of defects may lower it
     const bool has_lost_angles = final.defects() == initial.defects() &&
                                  state.angle_gain < -1e-9 * state.mesh.number_of_faces();
@@ -240,6 +249,7 @@ void optimize(const FaceRange& range,
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
     result.number_of_creases = final.creases;
+    result.number_of_self_intersections = defect_repair.defects().intersections.size();
     result.drift_bound *= unit;
     result.initial_drift *= unit;
     result.drift *= unit;

@@ -14,40 +14,20 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The number of creases, edges beyond 90 degrees that are on no line, does not increase in a patch. For the
-// repair of a defect, and where that is allowed, a patch may add as many as the mesh has lost since the
-// input; the commit, which is sequential, sees to it that the patches of a round do not add more together.
+// The number of creases, edges beyond 90 degrees that are on no line, does not increase in a patch, but for its
+// allowance; the commit, which is sequential, sees to it that the patches of a round do not add more together.
 struct Edge_creases : Invariant
 {
-  void set(const Step_limits& limits) { m_adds_creases = limits.adds_creases; }
-
-  void start(const Trial& trial)
-  {
-    m_is_crease.assign(trial.mesh().number_of_corners(), 0);
-    m_surplus = trial.state.crease_allowance();
-    m_number = 0;
-    m_is_first = true;
-  }
+  void start(const Trial& trial) { m_is_crease.assign(trial.mesh().number_of_corners(), 0); }
 
   void measure(const Trial& trial)
   {
-    const Indexed_mesh& mesh = trial.mesh();
-    for(const int f : trial.changed)
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        if(trial.has_opposite(c))
-          m_is_crease.after[trial.edge(c)] =
-            !trial.patch.is_on_line(c) &&
-            is_crease(trial.after.normals[f], trial.opposite_normal(c));
+    trial.for_each_changed_edge([&](int e, const Vector_3& a, const Vector_3& b) {
+      m_is_crease.after[e] = !trial.patch.is_on_line(e) && is_crease(a, b);
+    });
   }
 
-  void accept()
-  {
-    m_is_crease.accept();
-    if(m_is_first)
-      for(const char crease : m_is_crease.before)
-        m_number += crease;
-    m_is_first = false;
-  }
+  void accept() { m_is_crease.accept(); }
 
   void sum_up(const Trial& trial, Patch_measure& measure) const
   {
@@ -59,8 +39,8 @@ struct Edge_creases : Invariant
   // the faces at new creases are violating
   bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
-    const bool adds = m_adds_creases || after.defects() < trial.sums_before.defects();
-    if(after.inner_creases + after.boundary_creases <= m_number + (adds ? m_surplus : 0))
+    if(after.creases() <=
+       trial.initial_sums.creases() + trial.allowance(trial.state.counts.creases, after))
       return true;
     for(int c = 0; c < trial.mesh().number_of_corners(); ++c)
       if(m_is_crease.has_increased(c))
@@ -70,8 +50,6 @@ struct Edge_creases : Invariant
 
 private:
   Compared<char> m_is_crease; // per corner, at the first of the two of an edge
-  bool m_adds_creases = false, m_is_first = true;
-  int m_number = 0, m_surplus = 0; // before the first proposal, and what may be added
 };
 
 } // namespace internal

@@ -20,12 +20,8 @@ struct Edge_folds : Invariant
 
   void measure(const Trial& trial)
   {
-    const Indexed_mesh& mesh = trial.mesh();
-    for(const int f : trial.changed)
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        if(trial.has_opposite(c))
-          m_is_folded.after[trial.edge(c)] =
-            is_folded(trial.after.normals[f], trial.opposite_normal(c));
+    trial.for_each_changed_edge(
+      [&](int e, const Vector_3& a, const Vector_3& b) { m_is_folded.after[e] = is_folded(a, b); });
   }
 
   void accept() { m_is_folded.accept(); }

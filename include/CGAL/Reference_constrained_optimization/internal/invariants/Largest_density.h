@@ -17,15 +17,13 @@ namespace internal {
 // No density exceeds the largest one of the mesh before; densities beyond it do not increase.
 struct Largest_density : Invariant
 {
-  void set(const Step_limits& limits) { m_limit = limits.density; }
-
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
     bool holds = true;
     for(std::size_t e = 0; e < trial.patch.elements.size(); ++e)
     {
       const double density = trial.after.densities[e];
-      if(density > m_limit && density > trial.before.densities[e])
+      if(density > trial.limits.density && density > trial.before.densities[e])
       {
         holds = false;
         violating.add_element(e);
@@ -33,9 +31,6 @@ struct Largest_density : Invariant
     }
     return holds;
   }
-
-private:
-  double m_limit = 0;
 };
 
 } // namespace internal

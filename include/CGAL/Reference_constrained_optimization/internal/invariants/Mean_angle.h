@@ -27,7 +27,6 @@ struct Mean_angle : Invariant
     const double share = double(trial.patch.faces.size()) / double(state.mesh.number_of_faces());
     m_is_bounded = state.bounds_mean_angle;
     m_allowance = share * (std::max)(0., state.angle_gain);
-    m_is_first = true;
     m_angles.assign(m_is_bounded ? std::size_t(trial.mesh().number_of_faces()) : 0, 0);
   }
 
@@ -37,26 +36,21 @@ struct Mean_angle : Invariant
       return;
     for(const int f : trial.changed)
       m_angles.after[f] = degrees_per_radian * std::acos((std::min)(1., trial.after.cosines[f]));
-    m_sum = 0;
-    for(const double angle : m_angles.after)
-      m_sum += angle;
   }
 
-  void accept()
+  void accept() { m_angles.accept(); }
+
+  void sum_up(const Trial&, Patch_measure& measure) const
   {
-    m_angles.accept();
-    if(m_is_first)
-      m_least = m_sum - m_allowance;
-    m_is_first = false;
+    for(const double angle : m_angles.after)
+      measure.angles += angle;
   }
-
-  void sum_up(const Trial&, Patch_measure& measure) const { measure.angles = m_sum; }
 
   // the vertices of faces whose angles decrease are violating
   bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
-    const int repaired = trial.sums_before.defects() - after.defects();
-    if(!m_is_bounded || m_sum >= m_least - 60. * (std::max)(0, repaired))
+    const int repaired = (std::max)(0, trial.sums_before.defects() - after.defects());
+    if(!m_is_bounded || after.angles >= trial.initial_sums.angles - m_allowance - 60. * repaired)
       return true;
     const double tolerance = 0.1; // degrees
     for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
@@ -66,9 +60,9 @@ struct Mean_angle : Invariant
   }
 
 private:
-  bool m_is_bounded = false, m_is_first = true;
+  bool m_is_bounded = false;
   Compared<double> m_angles; // per face: its smallest, in degrees
-  double m_sum = 0, m_least = 0, m_allowance = 0;
+  double m_allowance = 0;
 };
 
 } // namespace internal

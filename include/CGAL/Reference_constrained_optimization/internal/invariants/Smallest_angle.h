@@ -15,15 +15,13 @@ namespace internal {
 // No angle of a triangle falls below the smallest one of the mesh before; angles below it do not decrease.
 struct Smallest_angle : Invariant
 {
-  void set(const Step_limits& limits) { m_largest_cosine = limits.cosine; }
-
   bool holds(const Trial& trial, Violating_vertices& violating) const
   {
     bool holds = true;
     for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
     {
       const double cosine = trial.after.cosines[f];
-      if(cosine > m_largest_cosine && cosine > trial.before.cosines[f])
+      if(cosine > trial.limits.cosine && cosine > trial.before.cosines[f])
       {
         holds = false;
         violating.add_face(f);
@@ -31,9 +29,6 @@ struct Smallest_angle : Invariant
     }
     return holds;
   }
-
-private:
-  double m_largest_cosine = 1;
 };
 
 } // namespace internal

@@ -29,11 +29,10 @@ struct Smooth_edges : Invariant
   {
     if(m_cosines.after.empty())
       return;
-    const Indexed_mesh& mesh = trial.mesh();
-    for(const int f : trial.changed)
-      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        if(trial.patch.bounds_normal_deviation[f] && trial.has_opposite(c))
-          m_cosines.after[trial.edge(c)] = cosine(trial.after.normals[f], trial.opposite_normal(c));
+    trial.for_each_changed_edge([&](int e, const Vector_3& a, const Vector_3& b) {
+      if(trial.patch.is_smooth[e])
+        m_cosines.after[e] = cosine(a, b);
+    });
   }
 
   void accept() { m_cosines.accept(); }

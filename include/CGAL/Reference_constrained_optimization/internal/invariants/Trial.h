@@ -7,6 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/shape/Patch_samples.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct Patch_measure
   double angles = 0;       // sum of the faces' smallest angles in degrees, if their mean is bounded
   double volume = 0;       // six times that of the cones over its faces, if it is bounded
   int inner_creases = 0, boundary_creases = 0; // as for defects
+  int creases() const { return inner_creases + boundary_creases; }
+  int added_intersections =
+    0;                      // pairs of faces that intersect, since the first proposal for the patch
   int inner_defects = 0;    // inverted faces, quads that are not convex, and folded edges inside
   int boundary_defects = 0; // folded edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }
@@ -66,33 +70,55 @@ struct Patch_measure
   }
 };
 
+// Bounds that change between iterations and stages.
+struct Step_limits
+{
+  double density = 0; // no step may raise the density of an element above it, or further above
+  double cosine = 1;  // no step may raise that of an angle above it, or further above
+  // whether patches may add creases and intersections, up to the numbers of the input
+  bool uses_allowances = false;
+};
+
 // A patch with trial positions of its vertices.
 struct Trial
 {
   const Patch& patch;
   const Optimization_state& state;
+  const Step_limits& limits;
   const std::vector<Located_vertex>& located; // per vertex: its trial position
   const Patch_samples& samples;               // before
   const Patch_quantities &before, &after;
   const Patch_measure& sums_before;
+  const Patch_measure& initial_sums;            // before the first proposal for the patch
   const std::vector<Vector_3>& outside_normals; // per corner with a face outside: its normal
   const std::vector<int>& changed;              // faces that differ from the last trial
   const std::vector<char>& is_changed;          // per face
 
   const Indexed_mesh& mesh() const { return patch.polygons; }
   const Located_vertex& operator()(int v) const { return located[v]; }
-  // the normal of the face across a corner's edge; to be called only where there is one
-  const Vector_3& opposite_normal(int c) const
+
+  // What may be added of something that is counted: for the repair of a defect, and where that is allowed,
+  // as many as the mesh has lost since the input.
+  int allowance(const Bounded_number& number, const Patch_measure& after) const
   {
-    const int o = mesh().opposite[c];
-    return o >= 0 ? after.normals[mesh().corner_face[o]] : outside_normals[c];
+    return limits.uses_allowances || after.defects() < sums_before.defects() ? number.allowance()
+                                                                             : 0;
   }
-  bool has_opposite(int c) const { return mesh().opposite[c] >= 0 || patch.outside_face[c] >= 0; }
-  // the first of the corners of an edge
-  int edge(int c) const
+
+  // calls visit(e, normal, opposite_normal) for the edges of changed faces that have two faces, some of them
+  // twice; e is the first of the corners of the edge
+  template <typename Visit>
+  void for_each_changed_edge(const Visit& visit) const
   {
-    const int o = mesh().opposite[c];
-    return o >= 0 && o < c ? o : c;
+    for(const int f : changed)
+      for(int c = mesh().face_begin[f]; c < mesh().face_begin[f + 1]; ++c)
+      {
+        const int o = mesh().opposite[c];
+        if(o >= 0)
+          visit((std::min)(c, o), after.normals[f], after.normals[mesh().corner_face[o]]);
+        else if(patch.outside_face[c] >= 0)
+          visit(c, after.normals[f], outside_normals[c]);
+      }
   }
 };
 
@@ -110,26 +136,17 @@ struct Compared
   bool has_increased(std::size_t i) const { return after[i] > before[i]; }
 };
 
-// Bounds on single elements, which change between iterations.
-struct Step_limits
-{
-  double density = 0; // no step may raise the density of an element above it, or further above
-  double cosine = 1;  // no step may raise that of an angle above it, or further above
-  bool adds_creases = false; // whether patches may add creases, up to the number of the input
-};
-
 // An invariant is a rule that every accepted step obeys. It derives from this class and has
 //   bool holds(const Trial&, Violating_vertices&) const;
 // or, if it is a rule for the sums over a patch,
-//   bool holds(const Trial&, const Patch_measure& after, Violating_vertices&) const;
+//   bool holds(const Trial&, Patch_measure& after, Violating_vertices&) const;
 // which adds the violating vertices if it does not hold. Each invariant measures its own quantities, on the
 // faces that changed.
 struct Invariant
 {
-  void set(const Step_limits&) {} // before a decision
-  void start(const Trial&) {}     // of a new patch, before any measurement
-  void measure(const Trial&) {}   // the faces that changed
-  void accept() {}                // the last measurement is that before the next trial
+  void start(const Trial&) {}   // of a new patch, before any measurement
+  void measure(const Trial&) {} // the faces that changed
+  void accept() {}              // the last measurement is that before the next trial
   void sum_up(const Trial&, Patch_measure&) const {} // adds its sums over the patch
 };
 

@@ -29,7 +29,6 @@ struct Volume : Invariant
     m_largest_gain = share * (std::max)(0., state.largest_volume_change - state.volume_change);
     m_largest_loss = share * (std::max)(0., state.largest_volume_change + state.volume_change);
     m_apex = trial.located[0].position;
-    m_is_first = true;
   }
 
   void measure(const Trial& trial)
@@ -41,19 +40,16 @@ struct Volume : Invariant
         m_volumes.after[f] = face_volume(trial.mesh(), trial, f, trial.after.normals[f], m_apex);
   }
 
-  void accept()
+  void sum_up(const Trial&, Patch_measure& measure) const
   {
-    if(m_is_first)
-      m_initial = sum();
-    m_is_first = false;
+    for(const double v : m_volumes.after)
+      measure.volume += v;
   }
 
-  void sum_up(const Trial&, Patch_measure& measure) const { measure.volume = sum(); }
-
   // the vertices that contribute most are violating
-  bool holds(const Trial& trial, const Patch_measure&, Violating_vertices& violating) const
+  bool holds(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
   {
-    const double gain = sum() - m_initial;
+    const double gain = after.volume - trial.initial_sums.volume;
     const bool grows = gain > m_largest_gain, shrinks = -gain > m_largest_loss;
     if(!grows && !shrinks)
       return true;
@@ -83,18 +79,9 @@ struct Volume : Invariant
   }
 
 private:
-  double sum() const
-  {
-    double sum = 0;
-    for(const double v : m_volumes.after)
-      sum += v;
-    return sum;
-  }
-
   Compared<double> m_volumes; // per face, six times that; none if they are not bounded
   Vector_3 m_apex = Vector_3::Zero();
-  double m_largest_gain = 0, m_largest_loss = 0, m_initial = 0;
-  bool m_is_first = true;
+  double m_largest_gain = 0, m_largest_loss = 0;
 };
 
 } // namespace internal

@@ -303,14 +303,15 @@ double largest_coordinate(const Indexed_mesh& mesh, const PointAccess& point)
 
 // The corners of face f, split into triangles; quads along their shorter diagonal, unless that leaves
 // triangles without area, as where opposite vertices coincide, and the other does not.
-inline std::vector<std::array<int, 3>>
-split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+template <typename PointAccess>
+std::vector<std::array<int, 3>>
+split_face(const Indexed_mesh& mesh, const PointAccess& point, int f)
 {
   typedef std::vector<std::array<int, 3>> Triangles;
   const int c = mesh.face_begin[f];
   if(mesh.degree(f) == 3)
     return {{{c, c + 1, c + 2}}};
-  const auto at = [&](int i) -> const Vector_3& { return points[mesh.corner_vertex[i]]; };
+  const auto at = [&](int i) -> const Vector_3& { return point(mesh.corner_vertex[i]); };
   const auto area = [&](const Triangles& triangles) {
     double sum = 0;
     for(const std::array<int, 3>& t : triangles)
@@ -323,6 +324,13 @@ split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
     shorter.swap(longer);
   const double rounding = 1e-12;
   return area(shorter) < rounding * area(longer) ? longer : shorter;
+}
+
+inline std::vector<std::array<int, 3>>
+split_face(const Indexed_mesh& mesh, const std::vector<Vector_3>& points, int f)
+{
+  return split_face(
+    mesh, [&](int v) -> const Vector_3& { return points[v]; }, f);
 }
 
 } // namespace internal

@@ -107,7 +107,7 @@ inline std::vector<char> faces_on(const Optimization_state& state,
   return result;
 }
 
-// the corners of the mesh whose edges have a dihedral angle below 20 degrees
+// the corners of faces with a bounded normal deviation whose edges have a dihedral angle below 20 degrees
 inline std::vector<char> smooth_edges(const Optimization_state& state)
 {
   const Indexed_mesh& mesh = state.mesh;
@@ -117,9 +117,11 @@ inline std::vector<char> smooth_edges(const Optimization_state& state)
   for(int c = 0; c < mesh.number_of_corners(); ++c)
     if(mesh.opposite[c] > c)
     {
-      const Vector_3 a = face_normal(mesh, vertex, mesh.corner_face[c]),
-                     b = face_normal(mesh, vertex, mesh.corner_face[mesh.opposite[c]]);
-      result[c] = result[mesh.opposite[c]] = a.dot(b) >= cosine_of_turn * a.norm() * b.norm();
+      const int f = mesh.corner_face[c], g = mesh.corner_face[mesh.opposite[c]];
+      const Vector_3 a = face_normal(mesh, vertex, f), b = face_normal(mesh, vertex, g);
+      result[c] = result[mesh.opposite[c]] =
+        (state.bounds_normal_deviation[f] || state.bounds_normal_deviation[g]) &&
+        a.dot(b) >= cosine_of_turn * a.norm() * b.norm();
     }
   return result;
 }

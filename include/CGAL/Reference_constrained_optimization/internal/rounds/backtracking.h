@@ -9,6 +9,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Edge_creases.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Edge_folds.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Energy_decrease.h>
+#include <CGAL/Reference_constrained_optimization/internal/invariants/Face_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Face_orientation.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Largest_density.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Mean_angle.h>
@@ -38,7 +39,8 @@ typedef std::tuple<Face_orientation,
                    Normal_deviation_bound,
                    Distance_bound>
   Local_invariants;
-typedef std::tuple<Edge_creases, Volume, Mean_angle, Energy_decrease> Sum_invariants;
+typedef std::tuple<Edge_creases, Volume, Mean_angle, Energy_decrease, Face_intersections>
+  Sum_invariants;
 
 // Backtracking on a mover's proposal, measured on R. If an invariant does not hold the step is reduced,
 // first at the violating vertices, then everywhere; only faces that change are measured again.
@@ -66,15 +68,14 @@ public:
   {
     Decision decision;
     Violating_vertices violating(patch);
-    const Trial trial{patch,   state,      m_candidate,       samples,   m_before,
-                      m_after, m_accepted, m_outside_normals, m_changed, m_is_changed};
-    for_each_invariant([&](auto& invariant) { invariant.set(limits); });
+    const Trial trial{patch,   state,      limits,    m_candidate,       samples,   m_before,
+                      m_after, m_accepted, m_initial, m_outside_normals, m_changed, m_is_changed};
     m_candidate = patch.located;
     if(is_first)
     {
       start(trial);
       measure(trial, density);
-      m_accepted = sum_up(trial);
+      m_initial = m_accepted = sum_up(trial);
     }
     decision.before = m_accepted;
     m_before = m_after;
@@ -162,7 +163,7 @@ private:
   }
 
   // whether all invariants hold
-  bool hold(const Trial& trial, const Patch_measure& after, Violating_vertices& violating) const
+  bool hold(const Trial& trial, Patch_measure& after, Violating_vertices& violating) const
   {
     // all are tested, to reduce the steps of all violating vertices at once
     bool hold_locally = true;
@@ -246,7 +247,7 @@ private:
   std::vector<Located_vertex> m_candidate;
   std::vector<Vector_3> m_outside_normals; // per corner
   Patch_quantities m_before, m_after;
-  Patch_measure m_accepted;
+  Patch_measure m_initial, m_accepted;
   std::vector<int> m_changed;                       // faces to be measured
   std::vector<char> m_is_changed;                   // per face
   std::vector<int> m_number_of_violations, m_rings; // per vertex

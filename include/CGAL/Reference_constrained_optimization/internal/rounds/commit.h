@@ -5,8 +5,10 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_COMMIT_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_ROUNDS_COMMIT_H
 
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_triangle.h>
 #include <CGAL/Reference_constrained_optimization/internal/rounds/patch_solver.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -45,6 +47,28 @@ inline double shared_energy(const Optimization_state& state, const Solved_patch&
   return sum;
 }
 
+// the number of pairs of a face of the patch and another of these that intersect, as the state is now
+inline int number_of_intersections(const Optimization_state& state,
+                                   const Solved_patch& s,
+                                   const std::vector<int>& others)
+{
+  if(s.faces_near_sheets.empty() || others.empty())
+    return 0;
+  const auto triangles_of = [&](const std::vector<int>& faces) {
+    std::vector<Indexed_triangle> triangles;
+    for(const int f : faces)
+      append_triangles(
+        state.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }, f,
+        triangles);
+    return triangles;
+  };
+  int number = 0;
+  for_each_close_pair(
+    triangles_of(s.faces_near_sheets), triangles_of(others),
+    [&](const Indexed_triangle& a, const Indexed_triangle& b) { number += intersect(a, b); });
+  return number;
+}
+
 // swaps some vertices of a patch, given by their local indices, with those of the state
 inline void
 exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& local_vertices)
@@ -53,11 +77,25 @@ exchange(Optimization_state& state, Solved_patch& s, const std::vector<int>& loc
     std::swap(state.vertices[s.patch.vertices[i]], s.located[i]);
 }
 
+// how many more the patch has since its outer vertices were exchanged
+inline int
+added_intersections(Optimization_state& state, Solved_patch& s, const std::vector<int>& others)
+{
+  const int after = number_of_intersections(state, s, others);
+  if(after == 0)
+    return 0;
+  exchange(state, s, s.outer_vertices);
+  const int before = number_of_intersections(state, s, others);
+  exchange(state, s, s.outer_vertices);
+  return (std::max)(0, after - before);
+}
+
 // Decides whether an accepted patch is committed. Another patch of the round may have moved faces across
-// its boundary since the acceptance test: folds and creases there are counted again, and shared stencils are
-// evaluated again. Only the vertices of boundary faces and shared stencils are exchanged; `commit_inside()`
-// has to follow.
-inline void commit_boundary(Optimization_state& state, Solved_patch& s)
+// its boundary since the acceptance test: folds and creases there are counted again, shared stencils are
+// evaluated again, and faces are tested for intersections with `moved`, those of the patches of this round
+// that are committed already, near which R has another sheet. Only the outer vertices are exchanged;
+// `commit_inside()` has to follow.
+inline void commit_boundary(Optimization_state& state, Solved_patch& s, std::vector<int>& moved)
 {
   if(!s.decision.accepted)
     return;
@@ -70,11 +108,14 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
     after.inner_defects - before.inner_defects + edges_after.folds - edges_before.folds;
   const int crease_change =
     after.inner_creases - before.inner_creases + edges_after.creases - edges_before.creases;
+  const int intersection_change =
+    after.added_intersections - before.added_intersections + added_intersections(state, s, moved);
   // energies that are not shared have changed as in the acceptance test
   const double rise = s.shared_stencils.empty() ? 0
                                                 : shared_energy(state, s) - shared_before -
                                                     (after.shared_energy - before.shared_energy);
-  const bool is_better = crease_change <= state.crease_allowance() &&
+  const bool is_better = crease_change <= state.counts.creases.allowance() &&
+                         intersection_change <= state.counts.intersections.allowance() &&
                          (change < 0 || (change == 0 && after.energy + rise < before.energy));
   if(!is_better)
   {
@@ -83,7 +124,10 @@ inline void commit_boundary(Optimization_state& state, Solved_patch& s)
     s.decision.after = s.decision.before;
     return;
   }
-  state.number_of_creases += crease_change;
+  state.counts.creases.now += crease_change;
+  state.counts.intersections.now += intersection_change;
+  moved.insert(moved.end(), s.faces_near_sheets.begin(), s.faces_near_sheets.end());
+  state.update_near_sheets(s.faces_near_sheets);
   s.decision.after.boundary_defects =
     before.boundary_defects + change - (after.inner_defects - before.inner_defects);
 }

@@ -25,6 +25,7 @@ void commit_round(Optimization_state& state,
                   const Update& update)
 {
   std::size_t number = 0;
+  std::vector<int> moved;
   const auto commit_insides = [&]() {
     for_each(
       number,
@@ -45,7 +46,7 @@ void commit_round(Optimization_state& state,
       Solved_patch& s = solved[number++];
       if(s.number_of_faces == 0)
         continue;
-      commit_boundary(state, s);
+      commit_boundary(state, s, moved);
       report(s);
     }
   }

@@ -14,7 +14,6 @@
 #include <CGAL/Reference_constrained_optimization/internal/shape/Shape_bound.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -53,8 +52,10 @@ struct Solved_patch
     bool is_on_line;
   };
   std::vector<Boundary_edge> boundary;
-  std::vector<int> shared_stencils; // with vertices that other patches may move
-  // the free vertices, in local indices: those of boundary faces and shared stencils, and the others
+  std::vector<int> shared_stencils;   // with vertices that other patches may move
+  std::vector<int> faces_near_sheets; // that other patches may intersect
+  // the free vertices, in local indices: those of these faces, boundary faces and shared stencils, and the
+  // others
   std::vector<int> outer_vertices, inner_vertices;
   Backtracking::Decision decision;
   std::vector<Located_vertex> located;
@@ -78,6 +79,7 @@ struct Solved_patch
     samples = Shape_bound::Stored_samples();
     boundary = std::vector<Boundary_edge>();
     shared_stencils = std::vector<int>();
+    faces_near_sheets = std::vector<int>();
     outer_vertices = std::vector<int>();
     inner_vertices = std::vector<int>();
     located = std::vector<Located_vertex>();
@@ -176,6 +178,16 @@ private:
           s.boundary.push_back({s.patch.faces[f], s.patch.outside_face[c], s.patch.is_on_line(c)});
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
+        }
+      const auto before = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
+      const auto after = [&](int v) -> const Located_vertex& { return s.patch.located[v]; };
+      for(int f = 0; f < (state.is_near_sheet.empty() ? 0 : mesh.number_of_faces()); ++f)
+        if(state.is_near_sheets(state.mesh, before, s.patch.faces[f]) ||
+           state.is_near_sheets(mesh, after, f))
+        {
+          s.faces_near_sheets.push_back(s.patch.faces[f]);
+          for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+            is_outer[mesh.corner_vertex[c]] = 1;
         }
       for(const Patch::Stencil& stencil : s.patch.stencils)
         if(stencil.is_shared)

@@ -65,7 +65,7 @@ public:
   {
     const int maximum_passes = 10;
     double before = std::numeric_limits<double>::infinity();
-    m_visits.settings.limits.adds_creases = true;
+    m_visits.settings.limits.uses_allowances = true;
     m_searched_density.assign(m_state.mesh.number_of_faces(), 0);
     for(int pass = 0; pass < maximum_passes; ++pass)
     {

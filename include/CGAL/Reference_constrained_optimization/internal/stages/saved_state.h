@@ -31,11 +31,14 @@ public:
   {
     const Indexed_mesh& mesh = m_state.mesh;
     if(m_vertices.empty())
-      m_number_of_creases = m_state.number_of_creases;
+      m_counts = m_state.counts;
     for(const int f : faces)
     {
       if(!m_has_face[f])
+      {
         m_shape_bound.save(mesh, f, m_snapshot);
+        m_faces.push_back(f);
+      }
       m_has_face[f] = 1;
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
       {
@@ -52,17 +55,19 @@ public:
     for(const std::pair<int, Located_vertex>& v : m_vertices)
       m_has_vertex[v.first] = 0;
     m_vertices.clear();
-    for(const int f : m_snapshot.faces)
+    for(const int f : m_faces)
       m_has_face[f] = 0;
+    m_faces.clear();
     m_snapshot = Shape_bound::Snapshot();
   }
 
   void restore()
   {
     if(!m_vertices.empty())
-      m_state.number_of_creases = m_number_of_creases;
+      m_state.counts = m_counts;
     for(const std::pair<int, Located_vertex>& v : m_vertices)
       m_state.vertices[v.first] = v.second;
+    m_state.update_near_sheets(m_faces);
     m_shape_bound.restore(m_snapshot);
     clear();
   }
@@ -70,8 +75,9 @@ public:
 private:
   Optimization_state& m_state;
   Shape_bound& m_shape_bound;
-  int m_number_of_creases = 0;
+  Optimization_state::Counts m_counts;
   std::vector<std::pair<int, Located_vertex>> m_vertices;
+  std::vector<int> m_faces;
   Shape_bound::Snapshot m_snapshot;
   std::vector<char> m_has_vertex, m_has_face;
 };

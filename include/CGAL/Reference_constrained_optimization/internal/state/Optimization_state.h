@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,13 @@ inline bool locate_on_line(const Polyline_set& lines,
   vertex.normal = normal;
   return true;
 }
+
+// A number with an upper bound: that of the input.
+struct Bounded_number
+{
+  int largest = (std::numeric_limits<int>::max)(), now = 0;
+  int allowance() const { return (std::max)(0, largest - now); }
+};
 
 // What the caller constrained.
 struct Constraints
@@ -88,11 +96,62 @@ struct Optimization_state
   std::vector<char> is_line = {};
   bool is_on_line(int c) const { return !is_line.empty() && is_line[c]; }
 
-  // The largest number of creases, and the current one; edges of lines do not count.
-  int largest_number_of_creases = (std::numeric_limits<int>::max)(), number_of_creases = 0;
-  int crease_allowance() const
+  // of creases, without the edges of lines, and of pairs of faces that intersect
+  struct Counts
   {
-    return (std::max)(0, largest_number_of_creases - number_of_creases);
+    Bounded_number creases, intersections;
+  };
+  Counts counts = {};
+
+  // Per triangle of R, whether another sheet of R is near; none if empty. Then also the faces of the mesh that
+  // are or were at such triangles, with their bounding boxes: only these are tested for intersections. A round
+  // updates them, and so does whoever moves vertices between rounds.
+  struct Boxed_face
+  {
+    int face;
+    Eigen::AlignedBox3d box;
+  };
+  std::vector<char> is_near_sheet = {};
+  std::vector<Boxed_face> faces_near_sheets = {};
+  std::vector<int> near_sheet_index = {}; // per face of the mesh: where it is among them, or -1
+  template <typename VertexAccess>
+  bool is_near_sheets(const Indexed_mesh& faces, const VertexAccess& vertex, int f) const
+  {
+    for(int c = faces.face_begin[f]; c < faces.face_begin[f + 1]; ++c)
+      if(is_near_sheet[vertex(faces.corner_vertex[c]).on_reference.face])
+        return true;
+    return false;
+  }
+  void set_near_sheets(std::vector<char> is_near)
+  {
+    is_near_sheet = std::move(is_near);
+    faces_near_sheets.clear();
+    near_sheet_index.assign(is_near_sheet.empty() ? 0 : mesh.number_of_faces(), -1);
+    std::vector<int> all(near_sheet_index.size());
+    std::iota(all.begin(), all.end(), 0);
+    update_near_sheets(all);
+  }
+  // after vertices of these faces have moved
+  void update_near_sheets(const std::vector<int>& moved)
+  {
+    if(is_near_sheet.empty())
+      return;
+    for(const int f : moved)
+    {
+      int& index = near_sheet_index[f];
+      if(index < 0 && !is_near_sheets(
+                        mesh, [&](int v) -> const Located_vertex& { return vertices[v]; }, f))
+        continue;
+      if(index < 0)
+      {
+        index = int(faces_near_sheets.size());
+        faces_near_sheets.push_back({f, {}});
+      }
+      Eigen::AlignedBox3d& box = faces_near_sheets[index].box;
+      box.setEmpty();
+      for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+        box.extend(vertices[mesh.corner_vertex[c]].position);
+    }
   }
 
   bool is_optimized(int f) const { return is_in_range.empty() || is_in_range[f]; }

@@ -6,24 +6,28 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITING_DEFECT_REPAIR_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Defects of faces and edges of a mesh.
+// Defects of faces and edges of a mesh, and its self-intersections.
 struct Output_defects
 {
   std::vector<char> is_inverted;          // per face: inverted, or a quad that is not convex
   std::vector<char> is_folded, is_crease; // per corner, at the first of the two of an edge
+  std::vector<std::pair<int, int>> intersections;
   std::vector<double> angles; // per face, in degrees: its smallest; 180 if it is not bounded
   double smallest_angle = 180;
   std::size_t number = 0, number_of_creases = 0; // of inverted faces and folded edges; of creases
@@ -74,6 +78,10 @@ Output_defects find_output_defects(const Optimization_state& state,
     defects.number += std::size_t(folded);
   for(const char crease : defects.is_crease)
     defects.number_of_creases += std::size_t(crease);
+  std::vector<Vector_3> points;
+  for(const Located_vertex& v : vertices)
+    points.push_back(v.position);
+  defects.intersections = self_intersections(mesh, points);
   return defects;
 }
 
@@ -85,11 +93,15 @@ template <typename ConcurrencyTag>
 class Defect_repair
 {
 public:
-  Defect_repair(Optimization_state& state, const std::vector<Located_vertex>& start_vertices)
+  // `start`: the defects at the start
+  Defect_repair(Optimization_state& state,
+                const std::vector<Located_vertex>& start_vertices,
+                const Output_defects& start)
     : m_state(state),
       m_mesh(state.mesh),
       m_start_vertices(start_vertices),
-      m_start(find_output_defects<ConcurrencyTag>(state, start_vertices)),
+      m_start(start),
+      m_now(find_output_defects<ConcurrencyTag>(state, state.vertices)),
       m_is_restored(m_mesh.number_of_vertices(), 0)
   {}
 
@@ -102,22 +114,20 @@ public:
     const auto sum = [](const std::vector<double>& angles) {
       return std::accumulate(angles.begin(), angles.end(), 0.);
     };
-    return m_state.bounds_mean_angle && sum(defects().angles) < sum(m_start.angles);
+    return m_state.bounds_mean_angle && sum(m_now.angles) < sum(m_start.angles);
   }
 
-  // Until there are no more defects and creases than initially, and no angle is below the initial minimum.
+  // Until there are no more defects, creases and self-intersections than initially, and no angle is below the
+  // initial minimum.
   void run()
   {
-    while(true)
-    {
-      const Output_defects now = defects();
-      if(now.number <= m_start.number && !has_more_creases(now) &&
-         now.smallest_angle >= m_start.smallest_angle)
-        return;
-      if(!restore(vertices_at_new_defects(now)))
+    while(m_now.number > m_start.number || has_more_creases() || has_more_intersections() ||
+          m_now.smallest_angle < m_start.smallest_angle)
+      if(!restore(vertices_at_new_defects()))
         return; // all vertices there are restored
-    }
   }
+
+  const Output_defects& defects() const { return m_now; }
 
   // Restores rings of vertices around the restored ones, twice as many each time; if there are none, those
   // of the face whose energy has increased most, or all. False if all are restored.
@@ -149,14 +159,10 @@ public:
   }
 
 private:
-  bool has_more_creases(const Output_defects& defects) const
+  bool has_more_creases() const { return m_now.number_of_creases > m_start.number_of_creases; }
+  bool has_more_intersections() const
   {
-    return defects.number_of_creases > m_start.number_of_creases;
-  }
-
-  Output_defects defects() const
-  {
-    return find_output_defects<ConcurrencyTag>(m_state, m_state.vertices);
+    return m_now.intersections.size() > m_start.intersections.size();
   }
 
   template <typename Density>
@@ -166,17 +172,25 @@ private:
                           [&](int v) -> const Located_vertex& { return vertices[v]; });
   }
 
-  std::vector<char> vertices_at_new_defects(const Output_defects& defects) const
+  std::vector<char> vertices_at_new_defects() const
   {
     std::vector<char> is_worse(m_mesh.number_of_faces(), 0);
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
-      if(defects.is_inverted[f] > m_start.is_inverted[f] ||
-         defects.angles[f] < m_start.smallest_angle)
+      if(m_now.is_inverted[f] > m_start.is_inverted[f] || m_now.angles[f] < m_start.smallest_angle)
         is_worse[f] = 1;
     for(int c = 0; c < m_mesh.number_of_corners(); ++c)
-      if(defects.is_folded[c] > m_start.is_folded[c] ||
-         (has_more_creases(defects) && defects.is_crease[c] > m_start.is_crease[c]))
+      if(m_now.is_folded[c] > m_start.is_folded[c] ||
+         (has_more_creases() && m_now.is_crease[c] > m_start.is_crease[c]))
         is_worse[m_mesh.corner_face[c]] = is_worse[m_mesh.corner_face[m_mesh.opposite[c]]] = 1;
+    if(has_more_intersections())
+    {
+      std::vector<std::pair<int, int>> added;
+      std::set_difference(m_now.intersections.begin(), m_now.intersections.end(),
+                          m_start.intersections.begin(), m_start.intersections.end(),
+                          std::back_inserter(added));
+      for(const std::pair<int, int>& pair : added)
+        is_worse[pair.first] = is_worse[pair.second] = 1;
+    }
     std::vector<char> result = vertices_of<ConcurrencyTag>(m_mesh, is_worse);
     // where some vertices of a face are restored already, that was not sufficient
     std::vector<char> is_again(m_mesh.number_of_vertices(), 0);
@@ -209,13 +223,16 @@ private:
         is_new = true;
       }
     m_has_restored_vertices = m_has_restored_vertices || is_new;
+    if(is_new)
+      m_now = find_output_defects<ConcurrencyTag>(m_state, m_state.vertices);
     return is_new;
   }
 
   Optimization_state& m_state;
   const Indexed_mesh& m_mesh;
   const std::vector<Located_vertex>& m_start_vertices;
-  const Output_defects m_start;
+  const Output_defects& m_start;
+  Output_defects m_now;
   std::vector<char> m_is_restored; // per vertex
   bool m_has_restored_vertices = false;
   int m_rings = 1;
