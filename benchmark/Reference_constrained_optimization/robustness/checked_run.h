@@ -155,6 +155,8 @@ Violated_guarantees violated_guarantees(const Mesh& input,
                                             std::to_string(defects_in) + " to " +
                                             std::to_string(defects_out));
   broken.add_if(r.number_of_creases > r.initial_number_of_creases, "creases were added");
+  broken.add_if(r.number_of_self_intersections > r.initial_number_of_self_intersections,
+                "self-intersections were added");
   broken.add_if(defects_out == defects_in && r.final_energy > r.initial_energy,
                 "energy rose from " + in_short(r.initial_energy) + " by " +
                   in_short(r.final_energy - r.initial_energy));

@@ -291,6 +291,18 @@ inline std::vector<Stress_input> stress_inputs()
   add("vertices shuffled", shuffled(ball, 1), optimized);
   add("vertices shuffled, good reference", shuffled(ball, 1), improves).against(ball);
 
+  // close sheets
+  add("sheets a tenth of an edge apart", rco_test::double_sheet(16, 0.1 / 16, 0.04), optimized);
+  add("blade", rco_test::double_sheet(16, 1. / 16, 0.04, 0.98), optimized);
+  add("pleats of 173 degrees", rco_test::pleats(4, 6, 173), optimized);
+  add("fins",
+      deformed(rco_test::pleats(4, 6, 160),
+               [](const Vector_3& p) { return Vector_3(p.x(), p.y(), (std::max)(p.z(), 0.5)); }),
+      optimized);
+  const Soup finger = scaled(ball, 0.3, 0.3, 1);
+  add("fingers that nearly touch", joined(finger, finger, Vector_3(0.605, 0.01, 0.02)), optimized);
+  add("fingers that touch", joined(finger, finger, Vector_3(0.6, 0, 0)), optimized);
+
   // mesh and reference
   add("mesh far from the reference", shifted(ball, Vector_3(3, 0, 0)),
       is_refused("mesh: vertex 0 is "))
