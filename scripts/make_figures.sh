@@ -39,7 +39,7 @@ fi
 build=build/release
 cmake --preset release >/dev/null
 cmake --build "$build" --parallel "${RCO_JOBS:-1}" --target rco_benchmark quad_benchmark \
-  compatible_benchmark side_by_side method_pictures make_quad_mesh quad_mesh_optimization
+  compatible_benchmark side_by_side method_pictures rco make_quad_mesh quad_mesh_optimization
 if [ "$keeps_runs" = 0 ]; then
   rm -rf "$build/figures"
 fi

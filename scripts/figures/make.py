@@ -51,6 +51,8 @@ def data(name):
 
 
 def program(name):
+    if name == "rco":
+        return os.path.join(BUILD, "examples/Reference_constrained_optimization/rco/rco")
     folder = "examples" if name in ("make_quad_mesh", "quad_mesh_optimization") else "benchmark"
     return os.path.join(BUILD, folder, "Reference_constrained_optimization", name)
 
@@ -116,6 +118,8 @@ PAIRS = {
     "cow_bull": ("cow", "bull", (30, 20, "y"), (210, 20, "y")),
 }
 
+# three scans, three parts
+TURN_MESHES = ("armadillo", "bear", "elephant", "couplingdown", "fandisk", "rotor")
 CHART_MESHES = ("elephant", "fandisk", "bear", "armadillo")
 
 
@@ -495,6 +499,23 @@ def trade_charts():
                          "--finishing", "1,0"), figure("trade_exponent"))
 
 
+def turn_chart():
+    bounds = ("0.05e", "0.1e", "0.15e", "0.25e", "0.5e", "default")
+    own = []
+    for mesh in TURN_MESHES:
+        for bound in bounds:
+            for seed in "0123":
+                file = os.path.join(folder("turn"), f"{mesh}-{bound}-{seed}.json")
+                if not os.path.exists(file):
+                    limit = () if bound == "default" else ("--drift-bound", bound)
+                    text = run(program("rco"), "angle", data(mesh), "--json", "--random-seed", seed, *limit)
+                    with open(file, "w") as out:
+                        out.write(text)
+                with open(file) as result:
+                    own.append({"mesh": mesh, "drift-bound": bound, **json.load(result)})
+    charts.turn(own, figure("trade_turn"))
+
+
 def peer_charts():
     charts.peers(rows("peers", os.path.join(BENCHMARK, "quality/side_by_side.py"), "--format", "json",
                       program("side_by_side"), *map(data, CHART_MESHES)),
@@ -613,6 +634,7 @@ TASKS = {
     "angle_histograms": angle_histograms,
     "quad_histograms": quad_histograms,
     "trade_charts": trade_charts,
+    "turn_chart": turn_chart,
     "peer_charts": peer_charts,
     "tables": tables,
 }
