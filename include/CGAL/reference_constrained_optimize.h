@@ -148,6 +148,17 @@ namespace CGAL {
  *     \cgalParamType{`bool`}
  *     \cgalParamDefault{`false`}
  *   \cgalParamNEnd
+ *   \cgalParamNBegin{allow_creases}
+ *     \cgalParamDescription{whether creases, edges beyond 90 degrees that are neither constrained nor feature
+ *                           edges, may become more}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`false`}
+ *   \cgalParamNEnd
+ *   \cgalParamNBegin{allow_self_intersections}
+ *     \cgalParamDescription{whether pairs of faces that intersect may become more}
+ *     \cgalParamType{`bool`}
+ *     \cgalParamDefault{`false`}
+ *   \cgalParamNEnd
  *   \cgalParamNBegin{use_on_surface_steps}
  *     \cgalParamDescription{whether patches are optimized directly on the reference, and only defects and
  *                           regions of bad elements are flattened: faster, and more accurate. With `false`

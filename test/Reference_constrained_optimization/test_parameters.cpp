@@ -47,6 +47,7 @@ void test_chains()
     RCO_CHECK_EQUAL(parameter(np, tags::use_finishing_stage), true);
     RCO_CHECK_EQUAL(parameter(np, tags::vertex_location_map), 7);
     RCO_CHECK_EQUAL(parameter(np, tags::maximum_patch_size), 50);
+    RCO_CHECK_EQUAL(parameter(np, tags::allow_creases), true);
     RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::random_seed), 9);
     RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::relax_constraints), true);
     RCO_CHECK_EQUAL(parameter(np, CGAL::internal_np::number_of_iterations), 5);
@@ -58,10 +59,12 @@ void test_chains()
             .use_finishing_stage(true)
             .vertex_location_map(7)
             .maximum_patch_size(50)
+            .allow_creases(true)
             .random_seed(9)
             .relax_constraints(true)
             .number_of_iterations(5));
   has_all(params::maximum_patch_size(50)
+            .allow_creases(true)
             .vertex_location_map(7)
             .use_finishing_stage(true)
             .use_on_surface_steps(false)
@@ -85,7 +88,9 @@ void test_chains()
     internal::read_loop_parameters(internal::cgal_parameters(params::maximum_patch_size(50)
                                                                .energy_tolerance(0.01)
                                                                .developability_threshold(0.3)
+                                                               .allow_creases(true)
                                                                .maximum_running_time(12.5)
+                                                               .allow_self_intersections(true)
                                                                .number_of_iterations(4)
                                                                .random_seed(8)));
   RCO_CHECK_EQUAL(read.number_of_iterations, 4u);
@@ -94,6 +99,8 @@ void test_chains()
   RCO_CHECK_EQUAL(read.selection.maximum_patch_size, 50);
   RCO_CHECK_EQUAL(read.energy_tolerance, 0.01);
   RCO_CHECK_EQUAL(read.maximum_running_time, 12.5);
+  RCO_CHECK(read.allow_creases && read.allow_self_intersections);
+  RCO_CHECK(!standard.allow_creases && !standard.allow_self_intersections);
   const internal::Loop_parameters of_cgal =
     internal::read_loop_parameters(internal::cgal_parameters(params::random_seed(3)));
   RCO_CHECK_EQUAL(of_cgal.random_seed, 3u);

@@ -56,6 +56,8 @@ struct Movable_mesh : Located_shape
   {
     const Vertices gained = state.vertices;
     const internal::Output_defects initial = defects_of(start);
+    state.counts.creases.largest = int(initial.number_of_creases);
+    state.counts.intersections.largest = int(initial.intersections.size());
     Sequential_defect_repair repair(state, start, initial);
     repair.run();
     RCO_CHECK(repair.has_restored_vertices());

@@ -37,6 +37,7 @@ RCO::Result optimize(Mesh& mesh,
                       .random_seed(options.random_seed)
                       .maximum_running_time(options.maximum_running_time)
                       .relax_constraints(options.relax_constraints)
+                      .allow_self_intersections(options.allow_self_intersections)
                       .visitor(std::ref(progress));
     if(!(options.sharp_edges < 180))
       return CGAL::reference_constrained_optimize<Concurrency_tag>(mesh, reference, energy, np);
@@ -49,6 +50,7 @@ RCO::Result optimize(Mesh& mesh,
                      .developability_threshold(options.developability_threshold)
                      .maximum_patch_size(options.maximum_patch_size)
                      .detect_features(options.detects_features)
+                     .allow_creases(options.allow_creases)
                      .use_on_surface_steps(options.use_on_surface_steps)
                      .use_finishing_stage(options.use_finishing_stage);
   return drift_bound < 0 ? call(own) : call(own.drift_bound(drift_bound));

@@ -221,6 +221,10 @@ class Option_reader
       "and their vertices do not move, without the limits that auto sets to parts; default: auto");
     add("relax-constraints", po::bool_switch(&o.relax_constraints),
         "vertices on borders, and on edges constrained by an angle, slide along them");
+    add("allow-creases", po::bool_switch(&o.allow_creases),
+        "edges beyond 90 degrees may become more");
+    add("allow-self-intersections", po::bool_switch(&o.allow_self_intersections),
+        "pairs of faces that intersect may become more");
     add("use-finishing-stage", yes_or_no(o.use_finishing_stage),
         "whether the smallest angles are raised in the end; default: true");
     add("use-on-surface-steps", yes_or_no(o.use_on_surface_steps),

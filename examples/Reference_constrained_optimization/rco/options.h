@@ -32,6 +32,7 @@ struct Options
   int maximum_patch_size = 0;
   Drift_bound drift_bound;
   bool use_on_surface_steps = true, use_finishing_stage = true;
+  bool allow_creases = false, allow_self_intersections = false;
 
   bool detects_features = true; // those of mechanical parts; else
   double sharp_edges = 180;     // edges that turn by more degrees are constrained

@@ -78,12 +78,12 @@ struct Result
   /// creases at the start: edges whose two face normals are more than 90 degrees apart, but for those that are
   /// constrained or feature edges; folded edges are among them.
   std::size_t initial_number_of_creases = 0;
-  std::size_t number_of_creases = 0; ///< the same at the end, not more.
+  std::size_t number_of_creases = 0; ///< the same at the end; not more, unless allowed.
 
   /// pairs of faces at the start that intersect other than in a common vertex or edge; see
   /// `number_of_self_intersecting_pairs()`.
   std::size_t initial_number_of_self_intersections = 0;
-  std::size_t number_of_self_intersections = 0; ///< the same at the end, not more.
+  std::size_t number_of_self_intersections = 0; ///< the same at the end; not more, unless allowed.
 
   /// largest distance of an input vertex to the reference; free vertices are moved onto it.
   double largest_initial_distance = 0;

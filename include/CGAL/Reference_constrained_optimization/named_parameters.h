@@ -22,6 +22,7 @@ enum vertex_location_map_t { vertex_location_map };
 enum maximum_patch_size_t { maximum_patch_size };
 enum use_equal_areas_t { use_equal_areas };
 enum detect_features_t { detect_features };
+enum allow_creases_t { allow_creases };
 
 } // namespace internal_np
 
@@ -68,6 +69,8 @@ struct Named_parameters : public CGAL::Named_function_parameters<T, Tag, Base>
   CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
   /// appends the parameter of the same name: see `CGAL::parameters::detect_features()`.
   CGAL_RCO_ADD_NAMED_PARAMETER(detect_features)
+  /// appends the parameter of the same name: see `CGAL::parameters::allow_creases()`.
+  CGAL_RCO_ADD_NAMED_PARAMETER(allow_creases)
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 };
 
@@ -124,6 +127,8 @@ CGAL_RCO_ADD_NAMED_PARAMETER(maximum_patch_size)
 CGAL_RCO_ADD_NAMED_PARAMETER(use_equal_areas)
 /// starts a list with whether feature lines are detected and kept.
 CGAL_RCO_ADD_NAMED_PARAMETER(detect_features)
+/// starts a list with whether edges may be folded by more than 90 degrees that are not on input.
+CGAL_RCO_ADD_NAMED_PARAMETER(allow_creases)
 /// @}
 #undef CGAL_RCO_ADD_NAMED_PARAMETER
 

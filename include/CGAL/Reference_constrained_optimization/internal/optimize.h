@@ -189,9 +189,10 @@ void optimize(const FaceRange& range,
                    unit * (state.vertices[v].on_reference.position - copy.points[v]).norm());
   round_to_user_coordinates(frame, state);
   // faces of a coarse mesh bridge a longer distance
-  state.set_near_sheets(near_sheets(
-    surface,
-    (std::max)(1., mean_edge_length(copy.mesh, copy.points) / surface.mean_edge_length())));
+  if(!loop_parameters.allow_self_intersections)
+    state.set_near_sheets(near_sheets(
+      surface,
+      (std::max)(1., mean_edge_length(copy.mesh, copy.points) / surface.mean_edge_length())));
   const std::vector<Located_vertex> start_vertices = state.vertices;
   result.times.setup = seconds_since(start);
 
@@ -208,9 +209,12 @@ void optimize(const FaceRange& range,
   result.initial_number_of_creases = initial.creases;
   const Output_defects initial_defects = find_output_defects<ConcurrencyTag>(state, start_vertices);
   result.initial_number_of_self_intersections = initial_defects.intersections.size();
-  const auto bounded_number = [](std::size_t n) { return Bounded_number{int(n), int(n)}; };
-  state.counts.creases = bounded_number(initial.creases);
-  state.counts.intersections = bounded_number(initial_defects.intersections.size());
+  const auto bounded_number = [](std::size_t n, bool allows_more) {
+    return Bounded_number{allows_more ? Bounded_number::unbounded : int(n), int(n)};
+  };
+  state.counts.creases = bounded_number(initial.creases, loop_parameters.allow_creases);
+  state.counts.intersections =
+    bounded_number(initial_defects.intersections.size(), loop_parameters.allow_self_intersections);
 
   Loop_parameters framed_parameters = loop_parameters;
   framed_parameters.drift_bound /= unit;

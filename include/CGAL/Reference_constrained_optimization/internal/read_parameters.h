@@ -89,6 +89,10 @@ Loop_parameters read_loop_parameters(const NamedParameters& np)
   p.detect_features =
     choose_parameter(get_parameter(np, internal_np::detect_features), p.detect_features) &&
     !has_lines;
+  p.allow_creases =
+    choose_parameter(get_parameter(np, internal_np::allow_creases), p.allow_creases);
+  p.allow_self_intersections = choose_parameter(
+    get_parameter(np, CGAL::internal_np::allow_self_intersections), p.allow_self_intersections);
   p.use_on_surface_steps =
     choose_parameter(get_parameter(np, internal_np::use_on_surface_steps), p.use_on_surface_steps);
   p.selection.developability_threshold =

@@ -101,8 +101,9 @@ struct Trial
   // as many as the mesh has lost since the input.
   int allowance(const Bounded_number& number, const Patch_measure& after) const
   {
-    return limits.uses_allowances || after.defects() < sums_before.defects() ? number.allowance()
-                                                                             : 0;
+    return limits.uses_allowances || !number.is_bounded() || after.defects() < sums_before.defects()
+             ? number.allowance()
+             : 0;
   }
 
   // calls visit(e, normal, opposite_normal) for the edges of changed faces that have two faces, some of them

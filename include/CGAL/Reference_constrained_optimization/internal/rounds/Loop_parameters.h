@@ -29,6 +29,7 @@ struct Loop_parameters
   bool relax_constraints = false;
   bool detect_features = true; // where the caller constrains no edges
   bool use_on_surface_steps = true;
+  bool allow_creases = false, allow_self_intersections = false; // more than on input
 };
 
 // Sizes are counted in triangles: a quad is two.

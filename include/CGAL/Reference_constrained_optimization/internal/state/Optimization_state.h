@@ -50,10 +50,12 @@ inline bool locate_on_line(const Polyline_set& lines,
   return true;
 }
 
-// A number with an upper bound: that of the input.
+// A number with an upper bound: that of the input, unless more are allowed.
 struct Bounded_number
 {
-  int largest = (std::numeric_limits<int>::max)(), now = 0;
+  static constexpr int unbounded = (std::numeric_limits<int>::max)() / 2;
+  int largest = unbounded, now = 0;
+  bool is_bounded() const { return largest < unbounded; }
   int allowance() const { return (std::max)(0, largest - now); }
 };
 

@@ -159,10 +159,14 @@ public:
   }
 
 private:
-  bool has_more_creases() const { return m_now.number_of_creases > m_start.number_of_creases; }
+  // than allowed
+  bool has_more_creases() const
+  {
+    return int(m_now.number_of_creases) > m_state.counts.creases.largest;
+  }
   bool has_more_intersections() const
   {
-    return m_now.intersections.size() > m_start.intersections.size();
+    return int(m_now.intersections.size()) > m_state.counts.intersections.largest;
   }
 
   template <typename Density>
