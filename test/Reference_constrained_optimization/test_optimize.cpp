@@ -545,7 +545,7 @@ void test_close_sheets()
   const double edge = 1. / 16;
   const Shape finger = scaled(icosphere(3), 0.3, 0.3, 1);
   const std::vector<std::pair<std::string, Shape>> shapes = {
-    {"close sheets", double_sheet(16, 0.1 * edge, 0.04)},
+    {"close sheets", double_sheet(16, 0.1 * edge, 0.1)},
     {"a blade", double_sheet(16, edge, 0.04, 0.98)},
     {"pleats of 173 degrees", pleats(4, 6, 173)},
     {"fins",

@@ -292,7 +292,7 @@ inline std::vector<Stress_input> stress_inputs()
   add("vertices shuffled, good reference", shuffled(ball, 1), improves).against(ball);
 
   // close sheets
-  add("sheets a tenth of an edge apart", rco_test::double_sheet(16, 0.1 / 16, 0.04), optimized);
+  add("sheets a tenth of an edge apart", rco_test::double_sheet(16, 0.1 / 16, 0.1), optimized);
   add("blade", rco_test::double_sheet(16, 1. / 16, 0.04, 0.98), optimized);
   add("pleats of 173 degrees", rco_test::pleats(4, 6, 173), optimized);
   add("fins",
