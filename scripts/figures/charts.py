@@ -141,7 +141,7 @@ def turn(rows, file):
     """a panel for each mesh: mean angle against mean turn of the faces, over bounds; means over the seeds"""
     meshes = of_each(rows, "mesh")
     figure, axes = new_figure("What a smaller drift bound costs and what turn of the faces it saves", list(meshes),
-                              "mean angle between faces and reference (degrees)", columns=3)
+                              "mean turn of the faces (degrees)", columns=3)
     for axis in axes[::3]:
         axis.set_ylabel("mean smallest angle (degrees)")
     for axis, of_mesh in zip(axes, meshes.values()):
@@ -152,8 +152,8 @@ def turn(rows, file):
                 lambda r: r["number_of_creases"]))
         given = [p for bound, p in points.items() if bound != "default"]
         axis.plot([p[0] for p in given], [p[1] for p in given], "o-", color=COLOURS[0],
-                  label="bounds of 0.05, 0.1, 0.15, 0.25 and 0.5 mean edges, the same everywhere")
-        axis.plot(*points["default"][:2], "*", color=COLOURS[4], markersize=10, label="default")
+                  label="bounds of 0.05, 0.1, 0.15, 0.25, 0.5 edges")
+        axis.plot(*points["default"][:2], "*", color=COLOURS[4], markersize=10, label="default; numbers: creases")
         for p in points.values():
             axis.annotate(f"{p[2]:.0f}", p[:2], textcoords="offset points", xytext=(4, -9), fontsize=7)
         creases = of_mesh[0]["initial_number_of_creases"]
