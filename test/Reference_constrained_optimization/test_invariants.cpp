@@ -176,6 +176,7 @@ void test_creases()
                            : Vector_3(0, 0, 0));
   const RCO::Exponential_MIPS_density density(1);
   RCO_CHECK_EQUAL(scene.measure(density).creases, 0u);
+  scene.state.counts.creases = {0, 0};
   const auto creases_by = [&](auto backtracking) {
     Scene moved(deformed(plane_grid(8, 8), beside), deformed(plane_grid(8, 8), roof));
     RCO_CHECK(backtracking.decide(scene.patch, scene.samples, scene.state, mover, density, {}, true)

@@ -289,7 +289,8 @@ inline std::vector<Stress_input> stress_inputs()
                }),
       optimized);
   add("vertices shuffled", shuffled(ball, 1), optimized);
-  add("vertices shuffled, good reference", shuffled(ball, 1), improves).against(ball);
+  // a quarter of a million pairs of faces intersect, and what lowers the energy adds some
+  add("vertices shuffled, good reference", shuffled(ball, 1), optimized).against(ball);
 
   // close sheets
   add("sheets a tenth of an edge apart", rco_test::double_sheet(16, 0.1 / 16, 0.1), optimized);
