@@ -224,28 +224,37 @@ inline Shape octahedron()
   return s;
 }
 
-// every triangle split into four `levels` times, new vertices on the unit sphere
+// every triangle split into four, the new vertices in the middle of edges
+inline Shape split_in_four(Shape s)
+{
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto inserted = middles.insert({std::minmax(a, b), int(s.points.size())});
+    if(inserted.second)
+      s.points.push_back((s.points[a] + s.points[b]) / 2);
+    return inserted.first->second;
+  };
+  const std::vector<std::vector<int>> faces = std::move(s.faces);
+  s.faces.clear();
+  for(const std::vector<int>& f : faces)
+  {
+    const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+    s.triangle(f[0], a, c);
+    s.triangle(f[1], b, a);
+    s.triangle(f[2], c, b);
+    s.triangle(a, b, c);
+  }
+  return s;
+}
+
+// the same `levels` times, with the vertices on the unit sphere
 inline Shape split_on_sphere(Shape s, int levels)
 {
   for(int l = 0; l < levels; ++l)
   {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto inserted = middles.insert({std::minmax(a, b), int(s.points.size())});
-      if(inserted.second)
-        s.points.push_back((s.points[a] + s.points[b]).normalized());
-      return inserted.first->second;
-    };
-    const std::vector<std::vector<int>> faces = std::move(s.faces);
-    s.faces.clear();
-    for(const std::vector<int>& f : faces)
-    {
-      const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
-      s.triangle(f[0], a, c);
-      s.triangle(f[1], b, a);
-      s.triangle(f[2], c, b);
-      s.triangle(a, b, c);
-    }
+    s = split_in_four(std::move(s));
+    for(Vector_3& p : s.points)
+      p.normalize();
   }
   return s;
 }

@@ -42,6 +42,41 @@ void test_folds()
   RCO_CHECK_EQUAL(r.number_of_flips + r.number_of_fold_edges, 0u);
 }
 
+// The same lines are features if every triangle is split: those of parts, and none of rough surfaces, whose
+// edges are as sharp.
+void test_split_triangles()
+{
+  const auto report_of = [](const Shape& shape) {
+    const Mesh mesh = mesh_of(shape);
+    std::set<Mesh::Edge_index> features;
+    RCO::Feature_report report =
+      RCO::detect_features(mesh, CGAL::Boolean_property_map<std::set<Mesh::Edge_index>>(features));
+    RCO_CHECK_EQUAL(report.number_of_feature_edges, features.size());
+    return report;
+  };
+  Shape rough = icosphere(3);
+  Random random(7);
+  for(Vector_3& p : rough.points)
+    p *= 1 + random(-0.1, 0.1);
+  for(Shape shape : {rough, octahedron(), cube(3), jittered_cube(3, 0.2)})
+  {
+    const RCO::Feature_report before = report_of(shape);
+    RCO_CHECK_LESS(1., before.amount_of_sharp_edges);
+    std::size_t pieces = 1;
+    for(int level = 0; level < 2; ++level)
+    {
+      shape = split_in_four(std::move(shape));
+      pieces *= 2;
+      const RCO::Feature_report after = report_of(shape);
+      RCO_CHECK_EQUAL(after.number_of_feature_edges, pieces * before.number_of_feature_edges);
+      RCO_CHECK_NEAR(after.amount_of_sharp_edges, before.amount_of_sharp_edges, 1e-9);
+      RCO_CHECK_NEAR(after.sharp_share, before.sharp_share, 1e-9);
+      RCO_CHECK_NEAR(after.flat_share, before.flat_share, 1e-9);
+    }
+  }
+  RCO_CHECK(!report_of(rough).has_features);
+}
+
 struct Outcome
 {
   Shape shape;
@@ -354,6 +389,7 @@ void test_rounded_parts()
 int main()
 {
   run_test("folds", test_folds);
+  run_test("split triangles", test_split_triangles);
   run_test("keeping", test_keeping);
   run_test("strips", test_strips);
   run_test("coarse parts", test_coarse_parts);

@@ -57,8 +57,8 @@ struct Feature_report
  * A mechanical part consists of planes and strips, or its edges are either sharp or nearly flat, and sharp
  * edges form lines between smooth regions; on a scan, an organic shape or a coarse mesh of one, dihedral
  * angles have all values, and sharp edges lie among others that are nearly as sharp. Each connected
- * component is classified separately, by the shares that `Feature_report` holds. The features of a part are
- * all edges with a dihedral angle of 40 degrees or more, except for folds (those above 120 degrees with a
+ * component is classified separately, by the shares that `Feature_report` holds; a triangle
+ * that was split into several counts as one. The features of a part are all edges with a dihedral angle of 40 degrees or more, except for folds (those above 120 degrees with a
  * face that is inverted with respect to the sum of the normals at its vertices), and their continuations
  * where the angle fades, down to 5 degrees.
  *

@@ -206,15 +206,16 @@ void optimize(const FaceRange& range,
   result.initial_number_of_flips = initial.flips;
   result.initial_number_of_fold_edges = initial.fold_edges;
   result.initial_number_of_nonconvex_quads = initial.nonconvex_quads;
-  result.initial_number_of_creases = initial.creases;
   const Output_defects initial_defects = find_output_defects<ConcurrencyTag>(state, start_vertices);
+  result.initial_number_of_creases = initial_defects.number_of_creases;
   result.initial_number_of_self_intersections = initial_defects.intersections.size();
   const auto bounded_number = [](std::size_t n, bool allows_more) {
     return Bounded_number{allows_more ? Bounded_number::unbounded : int(n), int(n)};
   };
-  state.counts.creases = bounded_number(initial.creases, loop_parameters.allow_creases);
-  state.counts.intersections =
-    bounded_number(initial_defects.intersections.size(), loop_parameters.allow_self_intersections);
+  state.counts.creases =
+    bounded_number(result.initial_number_of_creases, loop_parameters.allow_creases);
+  state.counts.intersections = bounded_number(result.initial_number_of_self_intersections,
+                                              loop_parameters.allow_self_intersections);
 
   Loop_parameters framed_parameters = loop_parameters;
   framed_parameters.drift_bound /= unit;
@@ -252,7 +253,7 @@ void optimize(const FaceRange& range,
     result.number_of_flips = final.flips;
     result.number_of_fold_edges = final.fold_edges;
     result.number_of_nonconvex_quads = final.nonconvex_quads;
-    result.number_of_creases = final.creases;
+    result.number_of_creases = defect_repair.defects().number_of_creases;
     result.number_of_self_intersections = defect_repair.defects().intersections.size();
     result.drift_bound *= unit;
     result.initial_drift *= unit;

@@ -7,7 +7,7 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Trial.h>
 #include <CGAL/Reference_constrained_optimization/internal/invariants/Violating_vertices.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_triangle.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -27,7 +27,11 @@ struct Face_intersections : Invariant
   bool holds(const Trial& trial, Patch_measure& after, Violating_vertices& violating) const
   {
     const Bounded_number& number = trial.state.counts.intersections;
-    const std::vector<int> faces = tested_faces(trial);
+    const auto vertex_before = [&](int v) -> const Located_vertex& {
+      return trial.patch.located[v];
+    };
+    const std::vector<int> faces =
+      trial.state.faces_near_sheets_of(trial.mesh(), vertex_before, trial);
     if(faces.empty())
       return true;
     const Pairs pairs = intersections(trial, trial.located, faces);
@@ -50,28 +54,13 @@ private:
   // of faces of the patch; or the second is ~f for a face f of the mesh
   typedef std::vector<std::pair<int, int>> Pairs;
 
-  static std::vector<int> tested_faces(const Trial& trial)
-  {
-    const Optimization_state& state = trial.state;
-    std::vector<int> faces;
-    if(state.is_near_sheet.empty())
-      return faces;
-    const auto before = [&](int v) -> const Located_vertex& { return trial.patch.located[v]; };
-    for(int f = 0; f < trial.mesh().number_of_faces(); ++f)
-      if(state.is_near_sheets(trial.mesh(), trial, f) ||
-         state.is_near_sheets(trial.mesh(), before, f))
-        faces.push_back(f);
-    return faces;
-  }
-
   static Pairs intersections(const Trial& trial,
                              const std::vector<Located_vertex>& located,
                              const std::vector<int>& faces)
   {
-    std::vector<Indexed_triangle> inside, outside;
-    for(const int f : faces)
-      append_triangles(
-        trial.mesh(), [&](int v) -> const Vector_3& { return located[v].position; }, f, inside);
+    const Optimization_state& state = trial.state;
+    std::vector<Indexed_triangle> inside = triangles_of(
+      trial.mesh(), [&](int v) -> const Vector_3& { return located[v].position; }, faces);
     Eigen::AlignedBox3d box;
     for(Indexed_triangle& t : inside)
     {
@@ -79,19 +68,22 @@ private:
       for(int& v : t.vertices)
         v = trial.patch.vertices[v];
     }
-    std::vector<int> own = trial.patch.faces;
-    std::sort(own.begin(), own.end());
-    const Optimization_state& state = trial.state;
+    std::vector<int> others;
     for(const Optimization_state::Boxed_face& other : state.faces_near_sheets)
-      if(box.intersects(other.box) && !std::binary_search(own.begin(), own.end(), other.face))
-        append_triangles(
-          state.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; },
-          other.face, outside);
-    Pairs pairs;
-    for_each_close_pair(inside, [&](const Indexed_triangle& s, const Indexed_triangle& t) {
-      if(s.face != t.face && intersect(s, t))
-        pairs.push_back(std::minmax(s.face, t.face));
-    });
+      if(box.intersects(other.box))
+        others.push_back(other.face);
+    if(!others.empty())
+    {
+      std::vector<int> own = trial.patch.faces;
+      std::sort(own.begin(), own.end());
+      others.erase(
+        std::remove_if(others.begin(), others.end(),
+                       [&](int f) { return std::binary_search(own.begin(), own.end(), f); }),
+        others.end());
+    }
+    const std::vector<Indexed_triangle> outside = triangles_of(
+      state.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }, others);
+    Pairs pairs = self_intersections(inside);
     for_each_close_pair(inside, outside, [&](const Indexed_triangle& s, const Indexed_triangle& t) {
       if(intersect(s, t))
         pairs.emplace_back(s.face, ~t.face);

@@ -52,15 +52,15 @@ struct Patch_quantities
 struct Patch_measure
 {
   double energy = 0; // of elements and stencils
-  double shared_energy =
-    0; // that part which is of stencils with vertices that other patches may move
+  // that part which is of stencils with vertices that other patches may move
+  double shared_energy = 0;
   double drift_energy = 0; // of the drift barrier
   double angles = 0;       // sum of the faces' smallest angles in degrees, if their mean is bounded
   double volume = 0;       // six times that of the cones over its faces, if it is bounded
   int inner_creases = 0, boundary_creases = 0; // as for defects
   int creases() const { return inner_creases + boundary_creases; }
-  int added_intersections =
-    0;                      // pairs of faces that intersect, since the first proposal for the patch
+  // pairs of faces that intersect, since the first proposal for the patch
+  int added_intersections = 0;
   int inner_defects = 0;    // inverted faces, quads that are not convex, and folded edges inside
   int boundary_defects = 0; // folded edges to faces outside
   int defects() const { return inner_defects + boundary_defects; }

@@ -50,7 +50,7 @@ struct Indexed_triangle
   }
 };
 
-// Appends the triangles into which a face is split, its vertices at point(v); without those that have no area.
+// Appends the triangles into which a face is split, its vertices at point(v), but for those without area.
 template <typename PointAccess>
 void append_triangles(const Indexed_mesh& mesh,
                       const PointAccess& point,
@@ -80,6 +80,18 @@ void append_triangles(const Indexed_mesh& mesh,
     return add({{c, c + 1, c + 2}});
   for(const std::array<int, 3>& corners : split_face(mesh, point, f))
     add(corners);
+}
+
+// those of several faces
+template <typename PointAccess>
+std::vector<Indexed_triangle>
+triangles_of(const Indexed_mesh& mesh, const PointAccess& point, const std::vector<int>& faces)
+{
+  std::vector<Indexed_triangle> triangles;
+  triangles.reserve(faces.size());
+  for(const int f : faces)
+    append_triangles(mesh, point, f, triangles);
+  return triangles;
 }
 
 // Whether two triangles whose planes may coincide are separated within them, in spite of rounding: without this,

@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_triangle.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -15,16 +16,11 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// The pairs of faces that intersect other than in a common vertex or edge, the smaller index first, sorted;
-// one for each pair of the triangles into which quads are split.
-inline std::vector<std::pair<int, int>> self_intersections(const Indexed_mesh& mesh,
-                                                           const std::vector<Vector_3>& points)
+// The pairs of faces of which triangles intersect other than in a common vertex or edge, the smaller index
+// first, sorted; one for each pair of triangles.
+inline std::vector<std::pair<int, int>>
+self_intersections(const std::vector<Indexed_triangle>& triangles)
 {
-  std::vector<Indexed_triangle> triangles;
-  triangles.reserve(mesh.number_of_faces());
-  for(int f = 0; f < mesh.number_of_faces(); ++f)
-    append_triangles(
-      mesh, [&](int v) -> const Vector_3& { return points[v]; }, f, triangles);
   std::vector<std::pair<int, int>> pairs;
   for_each_close_pair(triangles, [&](const Indexed_triangle& s, const Indexed_triangle& t) {
     if(intersect(s, t))
@@ -32,6 +28,15 @@ inline std::vector<std::pair<int, int>> self_intersections(const Indexed_mesh& m
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+inline std::vector<std::pair<int, int>> self_intersections(const Indexed_mesh& mesh,
+                                                           const std::vector<Vector_3>& points)
+{
+  std::vector<int> faces(mesh.number_of_faces());
+  std::iota(faces.begin(), faces.end(), 0);
+  return self_intersections(triangles_of(
+    mesh, [&](int v) -> const Vector_3& { return points[v]; }, faces));
 }
 
 } // namespace internal

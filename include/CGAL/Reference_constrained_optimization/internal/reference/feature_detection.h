@@ -8,6 +8,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/mesh/connected_region.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/flat_regions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,8 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// Statistics by which mechanical parts and scans are distinguished, of one connected component.
+// Statistics by which mechanical parts and scans are distinguished, of one connected component. A triangle
+// that was split into several counts as one.
 struct Feature_statistics
 {
   double area = 0;
@@ -94,7 +96,8 @@ public:
   {
     m_result.is_feature.assign(m_mesh.number_of_corners(), 0);
     m_result.is_mechanical.assign(m_mesh.number_of_faces(), 0);
-    m_is_in_plane.assign(m_mesh.number_of_faces(), 0);
+    m_is_inside.assign(m_mesh.number_of_corners(), 0);
+    m_region_of_face.assign(m_mesh.number_of_faces(), -1);
     compute_dihedral_angles();
     std::vector<char> is_unvisited(m_mesh.number_of_faces(), 1);
     for(int f = 0; f < m_mesh.number_of_faces(); ++f)
@@ -144,6 +147,7 @@ private:
   void classify(const std::vector<int>& component)
   {
     Feature_statistics e;
+    find_split_triangles(component);
     std::vector<int> sharp; // corners
     for(const int f : component)
     {
@@ -151,11 +155,12 @@ private:
       bool has_coplanar_neighbour = false;
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
         has_coplanar_neighbour =
-          has_coplanar_neighbour || (m_mesh.opposite[c] >= 0 && m_dihedral_angle[c] < flat_angle);
+          has_coplanar_neighbour ||
+          (m_mesh.opposite[c] >= 0 && !m_is_inside[c] && m_dihedral_angle[c] < flat_angle);
       e.flat_area += has_coplanar_neighbour ? face_area(f) : 0;
       for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
       {
-        if(m_mesh.opposite[c] < c)
+        if(m_mesh.opposite[c] < c || m_is_inside[c])
           continue;
         ++e.edges;
         e.shortest_edge = (std::min)(e.shortest_edge, length(c));
@@ -197,33 +202,43 @@ private:
     }
   }
 
+  // Marks the edges inside of regions whose outline is a triangle.
+  void find_split_triangles(const std::vector<int>& component)
+  {
+    visit_regions(component, flat_angle, [&](const std::vector<int>& region) {
+      if(!is_triangle(region))
+        return;
+      for(const int f : region)
+        for(int c = m_mesh.face_begin[f]; c < m_mesh.face_begin[f + 1]; ++c)
+          m_is_inside[c] =
+            m_mesh.opposite[c] >= 0 &&
+            m_region_of_face[m_mesh.corner_face[m_mesh.opposite[c]]] == m_region_of_face[f];
+    });
+  }
+
   void add_planes(const std::vector<int>& component, Feature_statistics& e)
   {
-    std::vector<int> plane;
-    for(const int start : component)
-    {
-      if(m_is_in_plane[start])
-        continue;
-      plane.assign(1, start);
-      m_is_in_plane[start] = 1;
+    visit_regions(component, rounding_angle, [&](const std::vector<int>& region) {
+      if(is_triangle(region))
+        return;
       double area = 0;
-      for(std::size_t i = 0; i < plane.size(); ++i)
-      {
-        area += face_area(plane[i]);
-        for(int c = m_mesh.face_begin[plane[i]]; c < m_mesh.face_begin[plane[i] + 1]; ++c)
-        {
-          const int o = m_mesh.opposite[c];
-          if(o >= 0 && m_dihedral_angle[c] < rounding_angle &&
-             !m_is_in_plane[m_mesh.corner_face[o]])
-          {
-            m_is_in_plane[m_mesh.corner_face[o]] = 1;
-            plane.push_back(m_mesh.corner_face[o]);
-          }
-        }
-      }
-      e.pair_area += plane.size() == 2 ? area : 0;
-      e.plane_area += plane.size() > 2 ? area : 0;
-    }
+      for(const int f : region)
+        area += face_area(f);
+      (region.size() == 2 ? e.pair_area : e.plane_area) += area;
+    });
+  }
+
+  template <typename Visit>
+  void visit_regions(const std::vector<int>& component, double angle, Visit visit)
+  {
+    for_each_flat_region(
+      m_mesh, component, [&](int c) { return m_dihedral_angle[c] < angle; }, m_region_of_face,
+      visit);
+  }
+  bool is_triangle(const std::vector<int>& region) const
+  {
+    return region.size() == 1 || number_of_outline_corners(m_mesh, m_surface.points(), region,
+                                                           m_region_of_face, flat_angle) == 3;
   }
 
   void add(int c)
@@ -309,16 +324,28 @@ private:
     return m_adjacent_angles[k] < m_dihedral_angle[c] / 3;
   }
 
-  // at the target of c
+  // at the target of c; if nothing ends there but edges inside of split triangles, where it goes on
   void collect_adjacent_angles(int c)
   {
-    const int v = m_mesh.target(c), ahead = continuation(c, 0.5);
     const std::size_t first = m_adjacent_angles.size();
-    for(int k = m_mesh.vertex_begin[v]; k < vertex_end(v); ++k)
+    const int most_pieces = 64;
+    for(int i = 0; i < most_pieces && c >= 0; ++i)
     {
-      const int d = m_mesh.vertex_corners[k];
-      if(m_mesh.target(d) != m_mesh.source(c) && m_mesh.opposite[d] >= 0 && d != ahead)
-        m_adjacent_angles.push_back(m_dihedral_angle[d]);
+      const int v = m_mesh.target(c), ahead = continuation(c, 0.5);
+      bool is_on_edge = false;
+      for(int k = m_mesh.vertex_begin[v]; k < vertex_end(v); ++k)
+      {
+        const int d = m_mesh.vertex_corners[k];
+        if(m_mesh.target(d) == m_mesh.source(c) || m_mesh.opposite[d] < 0 || d == ahead)
+          continue;
+        if(m_is_inside[d])
+          is_on_edge = true;
+        else
+          m_adjacent_angles.push_back(m_dihedral_angle[d]);
+      }
+      if(!is_on_edge || m_adjacent_angles.size() > first)
+        break;
+      c = ahead;
     }
     m_adjacent_angles.erase(
       std::remove_if(m_adjacent_angles.begin() + first, m_adjacent_angles.end(),
@@ -344,7 +371,8 @@ private:
   bool m_takes_rounded;
   std::vector<double> m_dihedral_angle; // per corner: of its edge, in degrees
   std::vector<double> m_adjacent_angles;
-  std::vector<char> m_is_in_plane; // per face
+  std::vector<char> m_is_inside; // per corner: its edge is inside of a split triangle
+  std::vector<int> m_region_of_face;
   bool m_has_mechanical_parts = false;
   Detected_features m_result;
 };

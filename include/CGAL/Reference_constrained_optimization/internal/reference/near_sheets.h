@@ -5,13 +5,13 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_NEAR_SHEETS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_REFERENCE_NEAR_SHEETS_H
 
+#include <CGAL/Reference_constrained_optimization/internal/mesh/Indexed_triangle.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -76,8 +76,7 @@ inline std::vector<char> near_sheets(const Reference_surface& reference, double 
        distance(f, g) <= margins[f] + margins[g])
       result[f] = result[g] = 1;
   };
-  const std::ptrdiff_t cutoff = 1000; // the fastest
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), visit, cutoff);
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), visit, box_intersection_cutoff);
   if(std::find(result.begin(), result.end(), 1) == result.end())
     result.clear();
   return result;

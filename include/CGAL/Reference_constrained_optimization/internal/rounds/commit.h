@@ -54,17 +54,10 @@ inline int number_of_intersections(const Optimization_state& state,
 {
   if(s.faces_near_sheets.empty() || others.empty())
     return 0;
-  const auto triangles_of = [&](const std::vector<int>& faces) {
-    std::vector<Indexed_triangle> triangles;
-    for(const int f : faces)
-      append_triangles(
-        state.mesh, [&](int v) -> const Vector_3& { return state.vertices[v].position; }, f,
-        triangles);
-    return triangles;
-  };
+  const auto point = [&](int v) -> const Vector_3& { return state.vertices[v].position; };
   int number = 0;
   for_each_close_pair(
-    triangles_of(s.faces_near_sheets), triangles_of(others),
+    triangles_of(state.mesh, point, s.faces_near_sheets), triangles_of(state.mesh, point, others),
     [&](const Indexed_triangle& a, const Indexed_triangle& b) { number += intersect(a, b); });
   return number;
 }

@@ -179,16 +179,16 @@ private:
           for(int d = mesh.face_begin[f]; d < mesh.face_begin[f + 1]; ++d)
             is_outer[mesh.corner_vertex[d]] = 1;
         }
-      const auto before = [&](int v) -> const Located_vertex& { return state.vertices[v]; };
+      const auto before = [&](int v) -> const Located_vertex& {
+        return state.vertices[s.patch.vertices[v]];
+      };
       const auto after = [&](int v) -> const Located_vertex& { return s.patch.located[v]; };
-      for(int f = 0; f < (state.is_near_sheet.empty() ? 0 : mesh.number_of_faces()); ++f)
-        if(state.is_near_sheets(state.mesh, before, s.patch.faces[f]) ||
-           state.is_near_sheets(mesh, after, f))
-        {
-          s.faces_near_sheets.push_back(s.patch.faces[f]);
-          for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-            is_outer[mesh.corner_vertex[c]] = 1;
-        }
+      for(const int f : state.faces_near_sheets_of(mesh, before, after))
+      {
+        s.faces_near_sheets.push_back(s.patch.faces[f]);
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          is_outer[mesh.corner_vertex[c]] = 1;
+      }
       for(const Patch::Stencil& stencil : s.patch.stencils)
         if(stencil.is_shared)
         {

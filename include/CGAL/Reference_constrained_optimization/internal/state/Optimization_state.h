@@ -124,6 +124,18 @@ struct Optimization_state
         return true;
     return false;
   }
+  // those of a patch that are at such triangles before or after a step
+  template <typename VertexBefore, typename VertexAfter>
+  std::vector<int> faces_near_sheets_of(const Indexed_mesh& patch,
+                                        const VertexBefore& before,
+                                        const VertexAfter& after) const
+  {
+    std::vector<int> result;
+    for(int f = 0; f < (is_near_sheet.empty() ? 0 : patch.number_of_faces()); ++f)
+      if(is_near_sheets(patch, after, f) || is_near_sheets(patch, before, f))
+        result.push_back(f);
+    return result;
+  }
   void set_near_sheets(std::vector<char> is_near)
   {
     is_near_sheet = std::move(is_near);
@@ -314,7 +326,7 @@ struct Global_measure
   double capped_energy = 0;   // the same with each density capped
   double largest_density = 0; // largest density of the elements that are not inverted
   double largest_cosine = -1; // largest cosine of an angle of a triangle with an element
-  std::size_t creases = 0, flips = 0, fold_edges = 0, nonconvex_quads = 0;
+  std::size_t flips = 0, fold_edges = 0, nonconvex_quads = 0;
   std::size_t defects() const { return flips + fold_edges + nonconvex_quads; }
 };
 
@@ -337,12 +349,8 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
       m.flips += is_flipped(mesh, vertex, f, normals[f]);
       m.nonconvex_quads += is_nonconvex(mesh, vertex, f);
       for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-        if(mesh.opposite[c] > c)
-        {
-          const Vector_3& other = normals[mesh.corner_face[mesh.opposite[c]]];
-          m.fold_edges += is_folded(normals[f], other);
-          m.creases += !state.is_on_line(c) && is_crease(normals[f], other);
-        }
+        m.fold_edges += mesh.opposite[c] > c &&
+                        is_folded(normals[f], normals[mesh.corner_face[mesh.opposite[c]]]);
       for(int e = state.elements.begin(f); e < state.elements.end(f); ++e)
       {
         const Eigen::Matrix2d J = element_jacobian(state.elements[e], vertex);
@@ -365,7 +373,6 @@ Global_measure measure(const Optimization_state& state, const Density& density, 
     sum.largest_cosine = (std::max)(sum.largest_cosine, m.largest_cosine);
     sum.flips += m.flips;
     sum.fold_edges += m.fold_edges;
-    sum.creases += m.creases;
     sum.nonconvex_quads += m.nonconvex_quads;
   }
   if(!state.stencils.empty())
