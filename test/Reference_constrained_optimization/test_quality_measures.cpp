@@ -11,6 +11,7 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures.h>
 
 #include <ctime>
+#include <functional>
 
 using namespace rco_test;
 
@@ -55,6 +56,53 @@ void test_distortion()
   RCO_CHECK_NEAR(d.median, 4.25, 1e-9);
   RCO_CHECK_NEAR(d.percentile_99, 4.25, 1e-9);
   RCO_CHECK_THROWS(RCO::distortion_statistics(source, mesh_of(plane)), RCO::Invalid_input, "");
+}
+
+// Which part of the reference a map covers, and how often; x tells where columns of a square are mapped to.
+void test_maps()
+{
+  const Mesh source = mesh_of(plane_grid(8, 8)), reference = mesh_of(plane_grid(16, 16));
+  const auto statistics_of = [&](const std::function<double(double)>& x) {
+    const Shape mapped =
+      deformed(plane_grid(8, 8), [&](const Vector_3& p) { return Vector_3(x(p.x()), p.y(), 0); });
+    const RCO::Map_statistics s = RCO::map_statistics(source, mesh_of(mapped), reference);
+    RCO_CHECK_EQUAL(s.number_of_samples, 4 * reference.number_of_faces());
+    return s;
+  };
+  const RCO::Map_statistics same = statistics_of([](double x) { return x; });
+  RCO_CHECK(same.is_usable());
+  RCO_CHECK_EQUAL(same.number_of_samples_hit_once, same.number_of_samples);
+  RCO_CHECK_NEAR(same.distortion.mean, 2, 1e-9);
+  RCO_CHECK_EQUAL(same.area_hit_more_than_once + same.area_not_hit + same.collapsed_area, 0.);
+
+  const RCO::Map_statistics folded = statistics_of([](double x) {
+    return x <= 0.5 ? x : x <= 0.75 ? 1 - x : 0.25 + 3 * (x - 0.75);
+  });
+  RCO_CHECK(!folded.is_usable());
+  RCO_CHECK_NEAR(folded.area_hit_more_than_once, 0.25, 1e-9);
+  RCO_CHECK_EQUAL(folded.number_of_samples_not_hit, 0u);
+
+  const RCO::Map_statistics half = statistics_of([](double x) { return 0.5 * x; });
+  RCO_CHECK(!half.is_usable());
+  RCO_CHECK_NEAR(half.area_not_hit, 0.5, 1e-9);
+  RCO_CHECK_NEAR(half.largest_uncovered_region, 0.27, 0.02); // triangles from .71 on
+  RCO_CHECK_EQUAL(half.area_hit_more_than_once, 0.);
+
+  const RCO::Map_statistics collapsed = statistics_of(
+    [](double x) { return x <= 0.5 ? x : 0.5 + (std::max)(1e-5, 4. / 3 * (x - 0.625)); });
+  RCO_CHECK_NEAR(collapsed.collapsed_area, 0.125, 1e-9);
+  RCO_CHECK(!collapsed.is_usable());
+  RCO_CHECK_LESS(1000., collapsed.distortion.mean);
+
+  // the other of two close sheets is no second cover, though a vertex is further away than it
+  const Shape sheets =
+    joined(plane_grid(8, 8), turned_round(plane_grid(8, 8)), Vector_3(0, 0, -0.02));
+  Shape lifted = sheets;
+  lifted.points[4 * 9 + 4] += Vector_3(0, 0, 0.1);
+  const RCO::Map_statistics close =
+    RCO::map_statistics(mesh_of(sheets), mesh_of(lifted), mesh_of(sheets));
+  RCO_CHECK_EQUAL(close.number_of_samples_hit_once, close.number_of_samples);
+  RCO_CHECK_THROWS(RCO::map_statistics(source, reference, reference), RCO::Invalid_input, "");
 }
 
 void test_drift()
@@ -356,6 +404,7 @@ int main()
 {
   run_test("angles", test_angles);
   run_test("distortion", test_distortion);
+  run_test("maps", test_maps);
   run_test("drift", test_drift);
   run_test("distance beside a needle", test_distance_beside_needle);
   run_test("orientation", test_orientation);

@@ -9,13 +9,14 @@
 
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/angles.h>
-#include <CGAL/Reference_constrained_optimization/quality_measures/distortion.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/map_statistics.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/quads.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct Measure
   double value;
   Role role = Role::figure;
   bool is_better_if_larger = false;
-  double tolerance = 0; // what is no change
+  double tolerance = 0;                                   // what is no change
+  double limit = std::numeric_limits<double>::infinity(); // the mesh cannot be used beyond it
 
   double gain(const Measure& before) const
   {
@@ -60,6 +62,7 @@ public:
     m_all.push_back({key, label, digits, value, role, true});
   }
   void let_pass(double tolerance) { m_all.back().tolerance = tolerance; }
+  void limit(double value) { m_all.back().limit = value; }
   const std::vector<Measure>& all() const { return m_all; }
 };
 
@@ -99,16 +102,22 @@ inline void add_quads(Measures& m, const Mesh& mesh, const Mesh& reference, bool
                       double(RCO::number_of_nonconvex_quads(mesh, reference)));
 }
 
-inline void add_distortion(Measures& m, const Mesh& mesh, const Mesh& reference, const Mesh& source)
+inline void add_map(Measures& m, const RCO::Map_statistics& map)
 {
-  const auto none = CGAL::parameters::default_values();
-  // the area of the reference, so that a map that covers only a part of it is not better for that
-  const double area = CGAL::to_double(CGAL::Polygon_mesh_processing::area(reference));
-  const RCO::Distortion_statistics d = RCO::distortion_statistics(source, mesh, none, none, area);
+  const RCO::Distortion_statistics& d = map.distortion;
   m.smaller_is_better(Role::aim, "mean_distortion", "distortion (2: isometric), mean", 3, d.mean);
+  m.limit(map.largest_mean_distortion);
   m.figure("median_distortion", "  median", 3, d.median);
   m.figure("percentile_99_of_distortion", "  99 %", 3, d.percentile_99);
   m.smaller_is_better(Role::condition, "maximum_distortion", "  maximum", 2, d.maximum);
+  m.figure("area_covered_more_than_once", "reference, part covered more than once", 5,
+           map.area_hit_more_than_once);
+  m.limit(map.largest_flawed_area);
+  m.figure("area_not_covered", "  part not covered", 5, map.area_not_hit);
+  m.figure("largest_uncovered_region", "  largest region further than 3 mean edges, part", 5,
+           map.largest_uncovered_region);
+  m.limit(map.largest_flawed_area);
+  m.figure("collapsed_area", "source, part that shrinks below a thousandth", 5, map.collapsed_area);
 }
 
 // the relative change of the volume that is enclosed; 0 for surfaces with a border and for polygons
@@ -123,11 +132,18 @@ inline double volume_change(const Mesh& mesh, const Mesh& reference)
   return before > 0 ? std::abs(after / before - 1) : 0;
 }
 
+inline void add_orientation(Measures& m, const RCO::Orientation_defects& defects)
+{
+  m.smaller_is_better(Role::condition, "flipped_faces", "flipped faces", 0,
+                      double(defects.number_of_flips));
+  m.smaller_is_better(Role::condition, "folded_edges", "folded edges", 0,
+                      double(defects.number_of_fold_edges));
+}
+
 // The reference is null if it is the mesh itself: deviations are zero then.
-inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference)
+inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference, const RCO::Drift& drift)
 {
   const bool is_itself = reference == nullptr;
-  const RCO::Drift drift = is_itself ? RCO::Drift() : RCO::drift(mesh, *reference);
   const double unit = is_itself ? 1 : drift.reference_mean_edge_length;
   m.figure("mesh_to_reference", "drift (mean edges of the reference), of the mesh", 3,
            drift.mesh_to_reference.maximum / unit);
@@ -162,25 +178,23 @@ inline std::vector<Measure> measure(const Mesh& mesh,
 {
   const Mesh& reference = other_reference != nullptr ? *other_reference : mesh;
   Measures m;
-  switch(options.application)
+  if(options.application == Application::map)
   {
-  case Application::angle:
-    add_angles(m, mesh);
-    break;
-  case Application::quad:
-    add_quads(m, mesh, reference, options.uses_angle_energy);
-    break;
-  case Application::map:
-    add_distortion(m, mesh, reference, source);
-    break;
+    const RCO::Map_statistics map = RCO::map_statistics(source, mesh, reference);
+    add_map(m, map);
+    add_orientation(m, map.defects);
+    if(has_shape)
+      add_shape(m, mesh, &reference, map.drift);
+    return m.all();
   }
-  const RCO::Orientation_defects defects = RCO::orientation_defects(mesh, reference);
-  m.smaller_is_better(Role::condition, "flipped_faces", "flipped faces", 0,
-                      double(defects.number_of_flips));
-  m.smaller_is_better(Role::condition, "folded_edges", "folded edges", 0,
-                      double(defects.number_of_fold_edges));
+  if(options.application == Application::angle)
+    add_angles(m, mesh);
+  else
+    add_quads(m, mesh, reference, options.uses_angle_energy);
+  add_orientation(m, RCO::orientation_defects(mesh, reference));
   if(has_shape)
-    add_shape(m, mesh, other_reference);
+    add_shape(m, mesh, other_reference,
+              other_reference == nullptr ? RCO::Drift() : RCO::drift(mesh, reference));
   return m.all();
 }
 

@@ -40,6 +40,9 @@ const char* const exit_codes = R"(Exit codes:
   11  out of time before anything was improved (OUT is written)
   12  interrupted by Ctrl-C or SIGTERM: what was reached by then is in OUT; a second
       Ctrl-C ends the program at once, and so does one while it measures
+  13  no usable map: its mean distortion is above 100, or more than a thousandth of the area of REFERENCE is
+      covered more than once, or is a region that is not covered: further than three mean edges from OUT (OUT
+      is written)
   14  not better: no objective of the energy is, and something is worse (OUT is written)
 )";
 

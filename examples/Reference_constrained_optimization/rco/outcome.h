@@ -17,7 +17,8 @@ enum class Outcome {
   nothing_to_do = 10,
   out_of_time = 11,
   interrupted = 12,
-  not_better = 14 // 13 is kept for maps that are of no use
+  not_usable = 13,
+  not_better = 14
 };
 
 inline const char* name(Outcome outcome)
@@ -42,6 +43,8 @@ inline const char* name(Outcome outcome)
     return "out of time";
   case Outcome::interrupted:
     return "interrupted";
+  case Outcome::not_usable:
+    return "no usable map";
   case Outcome::not_better:
     return "not better";
   }

@@ -102,6 +102,7 @@ inline void print_json(std::ostream& out, const Options& options, const Report& 
       << ",\n  \"reference\": " << file(options.reference)
       << ",\n  \"output\": " << file(options.output) << ",\n"
       << json_outcome(report.verdict.outcome)
+      << ",\n  \"flaws\": " << json_list(report.verdict.flaw_keys)
       << ",\n  \"worse\": " << json_list(report.verdict.worse_keys)
       << ",\n  \"status\": " << json_text(name(r.status))
       << ",\n  \"number_of_vertices\": " << report.number_of_vertices
@@ -132,8 +133,24 @@ inline void print_json(std::ostream& out, const std::string& error, Outcome outc
 inline std::string text_of(const Verdict& verdict)
 {
   std::string text = name(verdict.outcome);
+  if(verdict.outcome == Outcome::not_usable)
+    text += ": " + verdict.flaws;
   if(!verdict.worse.empty())
-    text += (verdict.outcome == Outcome::improved ? ", but: " : ": ") + verdict.worse;
+    text += (verdict.outcome == Outcome::improved     ? ", but: "
+             : verdict.outcome == Outcome::not_usable ? "; worse: "
+                                                      : ": ") +
+            verdict.worse;
+  return text;
+}
+
+inline std::string table_cell(const Measure& measure)
+{
+  const double largest_fixed = 1e8;
+  char text[32];
+  if(std::abs(measure.value) < largest_fixed)
+    std::snprintf(text, sizeof text, "%.*f", measure.digits, measure.value);
+  else
+    std::snprintf(text, sizeof text, "%.3e", measure.value);
   return text;
 }
 
@@ -147,8 +164,8 @@ inline void print_table(std::ostream& out, const Options& options, const Report&
   for(std::size_t i = 0; i < report.before.size(); ++i)
   {
     const Measure &a = report.before[i], &b = report.after[i];
-    out << std::setprecision(a.digits) << std::left << std::setw(label) << a.label << std::right
-        << std::setw(column) << a.value << std::setw(column) << b.value << '\n';
+    out << std::left << std::setw(label) << a.label << std::right << std::setw(column)
+        << table_cell(a) << std::setw(column) << table_cell(b) << '\n';
   }
   const auto print_counts = [&](const char* text, std::size_t before, std::size_t after) {
     out << std::left << std::setw(label) << text << std::right << std::setw(column) << before

@@ -174,6 +174,14 @@ expect 14 map near.off reference.off --relax-constraints --json
 json_is outcome 'not better'
 json_is exit_code 14
 json_is 'worse;0' mean_distortion
+# a map to half of the reference is none
+awk 'NF == 3 && NR > 2 { $1 /= 2; $3 = 0.3 * sin(3 * $1) * cos(2 * $2) } { print }' \
+  triangles.off >half.off
+expect 13 map flat.off reference.off --initial half.off -o half_map.off
+grep -q '^no usable map: largest uncovered region .* (at most 0.001)' out || fail "bare half of a map: $(cat out)"
+expect 13 map flat.off reference.off --initial half.off --json
+json_is outcome 'no usable map'
+json_is 'flaws;0' largest_uncovered_region
 expect 5 map flat.off reference.off --initial reference.off
 expect 3 map flat.off reference.off --landmarks nowhere.txt
 for line in '0' '0 0 0' 'a 0' '441 0' '0 324' '-1 0'; do

@@ -18,27 +18,37 @@
 struct Verdict
 {
   Outcome outcome = Outcome::nothing_to_do;
-  std::vector<std::string> worse_keys;
+  std::vector<std::string> worse_keys, flaw_keys;
+  std::string flaws; // beyond the limits, for people: "mean distortion 4.9e+17 (at most 100)"
   std::string worse; // for people: "flipped faces 0 -> 2, mean minimum angle 23.8 -> 14.6"
 };
+
+inline std::string text_of(double x, int digits = 4)
+{
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.*g", digits, x);
+  return buffer;
+}
+
+inline std::string name_of(const Measure& measure)
+{
+  std::string name = measure.key;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 // "mean minimum angle 23.8 -> 14.6", with as many digits as it takes to see a difference
 inline std::string text_of_change(const Measure& before, const Measure& after)
 {
-  std::string name = after.key;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  const auto text = [](double x, int digits) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.*g", digits, x);
-    return std::string(buffer);
-  };
   int digits = 4;
-  while(digits < 17 && text(before.value, digits) == text(after.value, digits))
+  while(digits < 17 && text_of(before.value, digits) == text_of(after.value, digits))
     ++digits;
-  return name + ' ' + text(before.value, digits) + " -> " + text(after.value, digits);
+  return name_of(after) + ' ' + text_of(before.value, digits) + " -> " +
+         text_of(after.value, digits);
 }
 
-// The mesh is improved if some objective of the energy is better. What is worse is reported.
+// The mesh is improved if some objective of the energy is better, unless it cannot be used. What is worse is
+// reported.
 inline Verdict verdict_on(const RCO::Result& result,
                           const std::vector<Measure>& before,
                           const std::vector<Measure>& after)
@@ -49,6 +59,12 @@ inline Verdict verdict_on(const RCO::Result& result,
   for(std::size_t i = 0; i < after.size(); ++i)
   {
     const Measure &a = before[i], &b = after[i];
+    if(!(b.value <= b.limit))
+    {
+      verdict.flaw_keys.push_back(b.key);
+      verdict.flaws += (verdict.flaws.empty() ? "" : ", ") + name_of(b) + ' ' + text_of(b.value) +
+                       " (at most " + text_of(b.limit) + ')';
+    }
     if(b.role == Role::figure)
       continue;
     const double size = std::isfinite(a.value) ? std::abs(a.value) : 0;
@@ -68,6 +84,8 @@ inline Verdict verdict_on(const RCO::Result& result,
     verdict.worse += " (none was taken for a feature)";
   if(result.status == RCO::Status::interrupted)
     verdict.outcome = Outcome::interrupted;
+  else if(!verdict.flaws.empty())
+    verdict.outcome = Outcome::not_usable;
   else if(is_better)
     verdict.outcome = Outcome::improved;
   else if(!verdict.worse_keys.empty())

@@ -18,6 +18,7 @@
 #include <CGAL/Reference_constrained_optimization/quality_measures/distortion.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/drift.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/feature_deviation.h>
+#include <CGAL/Reference_constrained_optimization/quality_measures/map_statistics.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/minimum_angle_estimate.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/normal_deviation.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/orientation.h>

@@ -217,24 +217,28 @@ public:
   // a gap, at most `largest_distance`. Faces that share a vertex with it are not opposite.
   double clearance(int f, double largest_distance) const
   {
-    const Search& s = search();
     const Vector_3 middle = (corner_point(f, 0) + corner_point(f, 1) + corner_point(f, 2)) / 3;
     const Vector_3 direction = face_normal(f).normalized();
-    std::vector<Triangle_iterator> hits;
-    s.tree.all_intersected_primitives(
-      Kernel::Segment_3(kernel_point(middle - largest_distance * direction),
-                        kernel_point(middle + largest_distance * direction)),
-      std::back_inserter(hits));
     double least = largest_distance;
-    for(const Triangle_iterator& hit : hits)
+    for(const int g : intersected_faces(middle - largest_distance * direction,
+                                        middle + largest_distance * direction))
     {
-      const int g = s.face[hit - Triangle_iterator(s.triangles.begin())];
       const Vector_3 normal = face_normal(g);
       if(!share_vertex(f, g) && normal.dot(direction) != 0)
         least = (std::min)(
           least, std::abs(normal.dot(corner_point(g, 0) - middle) / normal.dot(direction)));
     }
     return least;
+  }
+
+  // the faces that have an area and intersect a segment
+  std::vector<int> intersected_faces(const Vector_3& source, const Vector_3& target) const
+  {
+    const Search& s = search();
+    std::vector<Triangle_iterator> hits;
+    s.tree.all_intersected_primitives(Kernel::Segment_3(kernel_point(source), kernel_point(target)),
+                                      std::back_inserter(hits));
+    return faces_of(hits);
   }
 
   bool share_vertex(int f, int g) const
@@ -255,16 +259,8 @@ public:
     s.tree.all_intersected_primitives(
       Kernel::Iso_cuboid_3(kernel_point(p - half), kernel_point(p + half)),
       std::back_inserter(hits));
-    std::vector<int> found;
-    for(const Triangle_iterator& hit : hits)
-      found.push_back(s.face[hit - Triangle_iterator(s.triangles.begin())]);
-    if(s.has_pieces)
-    {
-      std::sort(found.begin(), found.end());
-      found.erase(std::unique(found.begin(), found.end()), found.end());
-    }
     std::vector<Surface_point> result;
-    for(const int f : found)
+    for(const int f : faces_of(hits))
     {
       const Surface_point q = closest_in_face(p, f);
       if((q.position - p).norm() <= distance)
@@ -343,6 +339,20 @@ private:
   {
     std::call_once(m_search->is_built, [this]() { build_tree(); });
     return *m_search;
+  }
+
+  std::vector<int> faces_of(const std::vector<Triangle_iterator>& hits) const
+  {
+    const Search& s = *m_search;
+    std::vector<int> faces;
+    for(const Triangle_iterator& hit : hits)
+      faces.push_back(s.face[hit - Triangle_iterator(s.triangles.begin())]);
+    if(s.has_pieces)
+    {
+      std::sort(faces.begin(), faces.end());
+      faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    }
+    return faces;
   }
 
   template <typename Hit>
