@@ -136,7 +136,7 @@ inline void add_orientation(Measures& m, const RCO::Orientation_defects& defects
 {
   m.smaller_is_better(Role::condition, "flipped_faces", "flipped faces", 0,
                       double(defects.number_of_flips));
-  m.smaller_is_better(Role::condition, "folded_edges", "folded edges", 0,
+  m.smaller_is_better(Role::condition, "folded_edges", "folded edges (beyond 120 degrees)", 0,
                       double(defects.number_of_fold_edges));
 }
 

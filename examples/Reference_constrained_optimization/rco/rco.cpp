@@ -51,16 +51,19 @@ double length_of(const Drift_bound& bound, const Mesh& reference)
 }
 
 // where a map starts
-Mesh read_initial_mesh(const Options& options, const Mesh& source, const Mesh& reference)
+Mesh read_initial_mesh(const Options& options,
+                       const Mesh& source,
+                       const Mesh& reference,
+                       RCO::Initial_mesh_report& report)
 {
   if(!options.initial.empty())
     return read_mesh(options.initial);
   if(options.landmarks.empty())
     return source;
   Mesh initial;
-  RCO::compatible_initial_mesh(source, reference,
-                               read_landmarks(options.landmarks, source, reference), initial,
-                               CGAL::parameters::random_seed(options.random_seed));
+  report = RCO::compatible_initial_mesh(
+    source, reference, read_landmarks(options.landmarks, source, reference), initial,
+    CGAL::parameters::random_seed(options.random_seed));
   return initial;
 }
 
@@ -83,12 +86,13 @@ Outcome run(const Options& options)
   const bool is_own_reference = options.reference.empty();
   const Mesh reference = is_own_reference ? input : read_mesh(options.reference);
   const bool is_map = options.application == Application::map;
-  const Mesh initial = is_map ? read_initial_mesh(options, input, reference) : input;
+  Report report;
+  const Mesh initial =
+    is_map ? read_initial_mesh(options, input, reference, report.initial) : input;
   if(!options.output.empty())
     check_output(options.output, initial);
 
   Mesh mesh = initial;
-  Report report;
   report.number_of_vertices = mesh.number_of_vertices();
   report.number_of_faces = mesh.number_of_faces();
   {

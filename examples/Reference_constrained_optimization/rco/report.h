@@ -9,6 +9,7 @@
 #include "verdict.h"
 
 #include <CGAL/Reference_constrained_optimization/Result.h>
+#include <CGAL/Reference_constrained_optimization/compatible_initial_mesh.h>
 
 #include <cmath>
 #include <cstddef>
@@ -16,12 +17,14 @@
 #include <iomanip>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct Report
 {
   std::size_t number_of_vertices = 0, number_of_faces = 0;
   std::vector<Measure> before, after;
+  RCO::Initial_mesh_report initial; // of a map from landmarks
   RCO::Result result;
   Verdict verdict;
 };
@@ -93,6 +96,22 @@ inline std::string json_list(const std::vector<std::string>& texts)
   return "[" + list + "]";
 }
 
+inline std::string joined(const std::vector<int>& vertices)
+{
+  std::string list;
+  for(const int v : vertices)
+    list += (list.empty() ? "" : ", ") + std::to_string(v);
+  return list;
+}
+
+inline std::string joined(const std::vector<std::pair<int, int>>& pairs)
+{
+  std::string list;
+  for(const std::pair<int, int>& p : pairs)
+    list += (list.empty() ? "[" : ", [") + joined({p.first, p.second}) + ']';
+  return list;
+}
+
 inline void print_json(std::ostream& out, const Options& options, const Report& report)
 {
   const RCO::Result& r = report.result;
@@ -109,7 +128,10 @@ inline void print_json(std::ostream& out, const Options& options, const Report& 
       << ",\n  \"number_of_faces\": " << report.number_of_faces
       << ",\n  \"number_of_free_vertices\": " << r.number_of_free_vertices
       << ",\n  \"number_of_feature_edges\": " << r.number_of_feature_edges
-      << ",\n  \"before\": " << json_object(report.before)
+      << ",\n  \"added_landmarks\": [" << joined(report.initial.added_landmarks)
+      << "],\n  \"unpaired_in_source\": [" << joined(report.initial.unpaired_in_source)
+      << "],\n  \"unpaired_in_reference\": [" << joined(report.initial.unpaired_in_reference)
+      << "],\n  \"before\": " << json_object(report.before)
       << ",\n  \"after\": " << json_object(report.after)
       << ",\n  \"initial_number_of_creases\": " << r.initial_number_of_creases
       << ",\n  \"number_of_creases\": " << r.number_of_creases
@@ -171,13 +193,22 @@ inline void print_table(std::ostream& out, const Options& options, const Report&
     out << std::left << std::setw(label) << text << std::right << std::setw(column) << before
         << std::setw(column) << after << '\n';
   };
-  print_counts("edges beyond 90 degrees, but for feature edges", r.initial_number_of_creases,
+  print_counts("creases: edges beyond 90 degrees but feature edges", r.initial_number_of_creases,
                r.number_of_creases);
   print_counts("self-intersecting pairs of faces", r.initial_number_of_self_intersections,
                r.number_of_self_intersections);
   if(options.detects_features)
     out << std::left << std::setw(label) << "feature edges detected" << std::right
         << std::setw(column) << r.number_of_feature_edges << '\n';
+  const RCO::Initial_mesh_report& initial = report.initial;
+  if(!initial.added_landmarks.empty())
+    out << "landmarks added at extremities, of source and reference: "
+        << joined(initial.added_landmarks) << '\n';
+  for(const bool is_source : {true, false})
+    if(const auto& v = is_source ? initial.unpaired_in_source : initial.unpaired_in_reference;
+       !v.empty())
+      out << "extremities of the " << (is_source ? "source" : "reference")
+          << " without a counterpart; set landmarks at these vertices: " << joined(v) << '\n';
   out << std::setprecision(2) << text_of(report.verdict) << " (" << name(r.status)
       << "): " << r.number_of_iterations << " iterations, " << r.running_time << " seconds";
   if(!options.output.empty())

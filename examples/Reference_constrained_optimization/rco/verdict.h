@@ -80,6 +80,16 @@ inline Verdict verdict_on(const RCO::Result& result,
     verdict.worse_keys.push_back(b.key);
     verdict.worse += (verdict.worse.empty() ? "" : ", ") + text_of_change(a, b);
   }
+  const auto add_count = [&](const char* key, std::size_t from, std::size_t to) {
+    if(to <= from)
+      return;
+    const Measure a{key, "", 0, double(from)}, b{key, "", 0, double(to)};
+    verdict.worse_keys.push_back(b.key);
+    verdict.worse += (verdict.worse.empty() ? "" : ", ") + text_of_change(a, b);
+  };
+  add_count("creases", result.initial_number_of_creases, result.number_of_creases);
+  add_count("self_intersections", result.initial_number_of_self_intersections,
+            result.number_of_self_intersections);
   if(has_lost_edges)
     verdict.worse += " (none was taken for a feature)";
   if(result.status == RCO::Status::interrupted)

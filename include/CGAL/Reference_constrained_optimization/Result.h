@@ -76,7 +76,7 @@ struct Result
   std::size_t number_of_nonconvex_quads = 0; ///< the same at the end.
 
   /// creases at the start: edges whose two face normals are more than 90 degrees apart, but for those that are
-  /// constrained or feature edges; folded edges are among them.
+  /// constrained or feature edges; the other folded edges are among them.
   std::size_t initial_number_of_creases = 0;
   std::size_t number_of_creases = 0; ///< the same at the end; not more, unless allowed.
 

@@ -17,7 +17,9 @@
 #include <boost/graph/graph_traits.hpp>
 #include <boost/property_map/property_map.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -33,14 +35,20 @@ namespace Reference_constrained_optimization {
  */
 struct Initial_mesh_report
 {
-  /// trees of landmarks along which the surfaces were cut.
+  /// trees of landmarks along which the surfaces were cut, of those with the same landmarks as the best.
   std::size_t number_of_trees = 0;
   /// trees for which both surfaces were flattened to the same convex polygon, with every triangle
   /// positively oriented and a simple boundary by exact predicates: their maps are bijective.
   std::size_t number_of_bijective_maps = 0;
-  /// the tree of the best map: pairs of positions in the range of landmarks. Positions from the
-  /// number of landmarks on are points of the border that were added.
+  /// the tree of the best map: pairs of positions in the range of landmarks, which is continued by
+  /// `added_landmarks` and, where a border has less than three, by points of it.
   std::vector<std::pair<int, int>> landmark_tree;
+  /// extremities without a landmark that were paired: positions in `vertices(source)` and in
+  /// `vertices(reference)`.
+  std::vector<std::pair<int, int>> added_landmarks;
+  /// extremities without a landmark and without a counterpart, which need a landmark: positions in
+  /// `vertices(source)` and in `vertices(reference)`.
+  std::vector<int> unpaired_in_source, unpaired_in_reference;
   /// mean of the symmetric Dirichlet density of the best map (4: isometric), the areas equal, each
   /// triangle capped at 100.
   double capped_energy = 0;
@@ -83,6 +91,79 @@ std::vector<int> landmark_positions(const FaceGraph& g,
   return result;
 }
 
+// " 3, 17 of the source", or nothing
+inline std::string list_of(const std::vector<int>& vertices, const std::string& name)
+{
+  std::string text;
+  for(const int v : vertices)
+    text += (text.empty() ? " " : ", ") + std::to_string(v);
+  return text.empty() ? text : text + " of the " + name;
+}
+
+// The best map by landmarks and by pairs of extremities that have none, which are added until none is left.
+inline std::vector<Vector_3> map_with_extremities(const Mesh_copy& source,
+                                                  const Mesh_copy& reference,
+                                                  std::vector<int> source_landmarks,
+                                                  std::vector<int> reference_landmarks,
+                                                  int number_of_trees,
+                                                  unsigned int seed,
+                                                  Initial_mesh_report& report)
+{
+  const int largest_number_of_rounds = 4;
+  const std::size_t number_of_landmarks = source_landmarks.size();
+  std::size_t number_of_trees_tried = 0;
+  std::vector<Vector_3> best;
+  report.capped_energy = std::numeric_limits<double>::infinity();
+  for(int round = 0; round < largest_number_of_rounds; ++round)
+  {
+    Landmark_map map(source, reference);
+    map.set_landmarks(source_landmarks, reference_landmarks);
+    std::vector<Landmark_map::Tried_tree> tried;
+    std::vector<Vector_3> points = map.map(number_of_trees, seed, tried);
+    const Landmark_map::Extremities found = map.extremities();
+    number_of_trees_tried += tried.size();
+    const auto least =
+      std::min_element(tried.begin(), tried.end(),
+                       [](const auto& a, const auto& b) { return a.distortion < b.distortion; });
+    const bool is_best = least->distortion < report.capped_energy;
+    if(is_best)
+    {
+      best = std::move(points);
+      report.landmark_tree = least->edges;
+      report.capped_energy = least->distortion;
+      report.number_of_trees = tried.size();
+      report.number_of_bijective_maps = std::size_t(
+        std::count_if(tried.begin(), tried.end(), [](const auto& t) { return t.is_bijective; }));
+      report.added_landmarks.clear();
+      for(std::size_t i = number_of_landmarks; i < source_landmarks.size(); ++i)
+        report.added_landmarks.emplace_back(source_landmarks[i], reference_landmarks[i]);
+    }
+    if(is_best || best.empty())
+    {
+      report.unpaired_in_source = found.source;
+      report.unpaired_in_reference = found.reference;
+    }
+    if(found.pairs.empty())
+      break;
+    for(const std::pair<int, int>& p : found.pairs)
+    {
+      source_landmarks.push_back(p.first);
+      reference_landmarks.push_back(p.second);
+    }
+  }
+  if(best.empty())
+  {
+    std::string ends = list_of(report.unpaired_in_source, "source"),
+                others = list_of(report.unpaired_in_reference, "reference");
+    ends += ends.empty() || others.empty() ? others : " and" + others;
+    throw Invalid_input("landmarks: none of " + std::to_string(number_of_trees_tried) +
+                        " trees led to a bijective map; more landmarks, above all at the ends of "
+                        "long parts, may help" +
+                        (ends.empty() ? "" : ", as at the vertices" + ends));
+  }
+  return best;
+}
+
 // Surface_mesh::clear() removes property maps, including the user's point map
 template <typename Mesh>
 auto remove_elements(Mesh& mesh, int) -> decltype(mesh.clear_without_removing_property_maps())
@@ -115,8 +196,9 @@ void remove_elements(Mesh& mesh, long)
  * The two surfaces must be closed and of genus 0, or disks. Borders are mapped onto each other.
  * A closed reference of opposite orientation is reversed first.
  *
- * An extremity (a limb, an ear) without a landmark shrinks exponentially in the plane: set a
- * landmark at the end of each.
+ * An extremity (a limb, an ear) without a landmark shrinks exponentially in the plane. Extremities of both
+ * surfaces whose distances from the landmarks are alike get a pair of landmarks if the map is better for it;
+ * those that have no counterpart are in the report: set a landmark at the end of each.
  *
  * \tparam SourceMesh a model of `FaceListGraph` and `HalfedgeListGraph`, of triangles and quads
  * \tparam ReferenceMesh the same; quads are split
@@ -205,26 +287,9 @@ compatible_initial_mesh(const SourceMesh& source,
   const std::vector<int> reference_positions =
     internal::landmark_positions(reference, reference_vertices, to, "reference");
 
-  internal::Landmark_map map(from, to);
-  map.set_landmarks(source_positions, reference_positions);
-  std::vector<internal::Landmark_map::Tried_tree> tried;
-  const std::vector<internal::Vector_3> points = map.map(int(number_of_trees), seed, tried);
   Initial_mesh_report report;
-  report.number_of_trees = tried.size();
-  const internal::Landmark_map::Tried_tree* best = nullptr;
-  for(const internal::Landmark_map::Tried_tree& t : tried)
-    if(t.is_bijective)
-    {
-      ++report.number_of_bijective_maps;
-      if(!best || t.distortion < best->distortion)
-        best = &t;
-    }
-  if(!best)
-    throw Invalid_input("landmarks: none of " + std::to_string(tried.size()) +
-                        " trees led to a bijective map; more landmarks, above all at the ends of "
-                        "long parts, may help");
-  report.landmark_tree = best->edges;
-  report.capped_energy = best->distortion;
+  const std::vector<internal::Vector_3> points = internal::map_with_extremities(
+    from, to, source_positions, reference_positions, int(number_of_trees), seed, report);
 
   auto vpm = choose_parameter(
     get_parameter(internal::cgal_parameters(np_output), CGAL::internal_np::vertex_point),

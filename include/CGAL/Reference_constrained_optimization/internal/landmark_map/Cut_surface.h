@@ -98,6 +98,16 @@ public:
     return m_scale * std::sqrt(CGAL::squared_distance(p, q));
   }
 
+  // the same for the area of a face
+  double area(Mesh::Face_index f) const
+  {
+    const Halfedge h = m_mesh.halfedge(f);
+    return m_scale * m_scale *
+           std::sqrt(CGAL::squared_area(m_mesh.point(m_mesh.source(h)),
+                                        m_mesh.point(m_mesh.target(h)),
+                                        m_mesh.point(m_mesh.target(m_mesh.next(h)))));
+  }
+
   void set_landmarks(const std::vector<int>& vertices)
   {
     for(const int v : vertices)
@@ -172,10 +182,12 @@ public:
   }
 
   // distances of all vertices from a landmark, without obstacles
-  Distances distances(int landmark) const
+  Distances distances(int landmark) const { return distances_from(m_landmarks[landmark]); }
+  // the same from any vertex, up to a limit
+  Distances distances_from(Vertex v, double limit = std::numeric_limits<double>::infinity()) const
   {
     return search(
-      landmark, [](Vertex) { return false; }, [](Halfedge) { return true; }, {});
+      v, [](Vertex) { return false; }, [](Halfedge) { return true; }, {}, limit);
   }
   // distances from a landmark within a sector, over vertices that are not taken, of the vertices
   // around another landmark, up to a limit; those of vertices further away are not all computed
@@ -192,7 +204,7 @@ public:
       if(!m_is_taken[m_mesh.target(h)])
         goals.push_back(m_mesh.target(h));
     return search(
-      from, [&](Vertex v) { return m_is_taken[v] && v != start; },
+      start, [&](Vertex v) { return m_is_taken[v] && v != start; },
       [&](Halfedge h) { return sector_of[rank(from, h)] == sector; }, goals, limit);
   }
 
@@ -317,14 +329,13 @@ private:
 
   // shortest paths (Dijkstra), up to a limit or until all goals, if there are any, are reached
   template <typename Blocked, typename FirstStep>
-  Distances search(int landmark,
+  Distances search(Vertex start,
                    const Blocked& is_blocked,
                    const FirstStep& may_start,
                    const std::vector<Vertex>& goals,
                    double limit = std::numeric_limits<double>::infinity()) const
   {
     typedef std::pair<double, Vertex> Reached;
-    const Vertex start = m_landmarks[landmark];
     Distances d;
     d.length.assign(m_mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
     d.predecessor.assign(m_mesh.number_of_vertices(), Mesh::null_vertex());

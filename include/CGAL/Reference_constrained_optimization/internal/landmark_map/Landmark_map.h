@@ -10,6 +10,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_tree.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Spanning_trees.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/extremities.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/polygon_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/surface_topology.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/transfer_through_polygon.h>
@@ -42,7 +43,8 @@ public:
   Landmark_map(const Mesh_copy& source, const Mesh_copy& reference)
     : m_source_copy(source),
       m_source(source),
-      m_reference(reference, are_opposite(source, reference))
+      m_reference(reference, are_opposite(source, reference)),
+      m_number_of_reference_points(int(reference.points.size()))
   {
     const bool source_is_closed = is_sphere(source, m_source, "source");
     const bool reference_is_closed = is_sphere(reference, m_reference, "reference");
@@ -90,6 +92,35 @@ public:
     }
     best.resize((std::min)(best.size(), m_source_copy.points.size()));
     return best;
+  }
+
+  // Extremities without a landmark: pairs of their vertices, and those that have no counterpart.
+  struct Extremities
+  {
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<int> source, reference;
+  };
+  Extremities extremities() const
+  {
+    const std::vector<Extremity> a = internal::extremities(m_source,
+                                                           int(m_source_copy.points.size())),
+                                 b =
+                                   internal::extremities(m_reference, m_number_of_reference_points);
+    Extremities result;
+    std::vector<char> is_paired_a(a.size(), 0), is_paired_b(b.size(), 0);
+    for(const std::pair<int, int>& p : counterparts(a, b))
+    {
+      result.pairs.emplace_back(a[p.first].vertex, b[p.second].vertex);
+      is_paired_a[p.first] = is_paired_b[p.second] = 1;
+    }
+    const double largest_relative_area = 0.5; // blunt ones may do without a landmark
+    for(std::size_t i = 0; i < a.size(); ++i)
+      if(!is_paired_a[i] && a[i].relative_area < largest_relative_area)
+        result.source.push_back(a[i].vertex);
+    for(std::size_t i = 0; i < b.size(); ++i)
+      if(!is_paired_b[i] && b[i].relative_area < largest_relative_area)
+        result.reference.push_back(b[i].vertex);
+    return result;
   }
 
 private:
@@ -310,6 +341,7 @@ private:
 
   const Mesh_copy& m_source_copy;
   Cut_surface m_source, m_reference;
+  int m_number_of_reference_points;
   double m_area_ratio = 1;
   std::vector<std::vector<double>> m_distance; // between landmarks, on both surfaces together
   std::vector<int> m_border;                   // landmarks on the border, in their order

@@ -1,0 +1,162 @@
+// Copyright (c) 2026 The Reference_constrained_optimization developers.
+//
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_EXTREMITIES_H
+#define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_EXTREMITIES_H
+
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
+
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/maximum_weighted_matching.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace CGAL {
+namespace Reference_constrained_optimization {
+namespace internal {
+
+// The end of a limb, an ear, a tail: a vertex that is further from all landmarks than those around it, where
+// the surface is smaller than a disk. Lengths are of the surface scaled to unit area.
+struct Extremity
+{
+  int vertex;
+  double distance;               // from the closest landmark
+  double relative_area;          // of the surface within half of that, over that of a disk
+  std::vector<double> distances; // from each landmark
+};
+
+// The area within a distance of a vertex over that of a disk. It is 1 if the border or few vertices are within, or
+// if these are no topological disk, as around the middle of a limb.
+inline double relative_area_around(const Cut_surface& surface,
+                                   double radius,
+                                   const std::vector<double>& distance_of_vertex)
+{
+  typedef Cut_surface::Mesh Mesh;
+  const Mesh& mesh = surface.mesh();
+  const auto is_inside = [&](Mesh::Vertex_index v) { return distance_of_vertex[v] < radius; };
+  const int fewest_vertices = 8;
+  int number = 0, euler_characteristic = 0;
+  for(const Mesh::Vertex_index v : mesh.vertices())
+    if(is_inside(v))
+    {
+      ++number;
+      if(mesh.is_border(v))
+        return 1;
+    }
+  euler_characteristic = number;
+  for(const Mesh::Edge_index e : mesh.edges())
+    euler_characteristic -= is_inside(mesh.vertex(e, 0)) && is_inside(mesh.vertex(e, 1));
+  double sum = 0;
+  for(const Mesh::Face_index f : mesh.faces())
+  {
+    const auto vertices = CGAL::vertices_around_face(mesh.halfedge(f), mesh);
+    const auto inside = std::count_if(vertices.begin(), vertices.end(), is_inside);
+    euler_characteristic += inside == 3;
+    if(inside > 0)
+      sum += double(inside) / 3 * surface.area(f);
+  }
+  const double pi = 3.14159265358979323846;
+  return number < fewest_vertices || euler_characteristic != 1 ? 1 : sum / (pi * radius * radius);
+}
+
+// Those of a surface with landmarks among its first n vertices, the furthest first; of several that are close
+// to one another only the furthest.
+inline std::vector<Extremity> extremities(const Cut_surface& surface, int n)
+{
+  const double smallest_distance = 0.06, largest_relative_area = 0.6;
+  const Cut_surface::Mesh& mesh = surface.mesh();
+  std::vector<std::vector<double>> from_landmark;
+  std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
+  for(std::size_t i = 0; i < surface.landmarks().size(); ++i)
+  {
+    from_landmark.push_back(surface.distances(int(i)).length);
+    for(std::size_t v = 0; v < distance.size(); ++v)
+      distance[v] = (std::min)(distance[v], from_landmark.back()[v]);
+  }
+  std::vector<Cut_surface::Vertex> furthest;
+  for(const Cut_surface::Vertex v : mesh.vertices())
+  {
+    if(int(v) >= n || mesh.is_isolated(v) || mesh.is_border(v) || distance[v] < smallest_distance)
+      continue;
+    const auto around = CGAL::halfedges_around_source(v, mesh);
+    if(std::none_of(around.begin(), around.end(), [&](Cut_surface::Halfedge h) {
+         return distance[mesh.target(h)] > distance[v];
+       }))
+      furthest.push_back(v);
+  }
+  std::stable_sort(
+    furthest.begin(), furthest.end(),
+    [&](Cut_surface::Vertex a, Cut_surface::Vertex b) { return distance[a] > distance[b]; });
+  std::vector<char> is_near(mesh.number_of_vertices(), 0); // a further one
+  std::vector<Extremity> result;
+  for(const Cut_surface::Vertex v : furthest)
+  {
+    if(is_near[v])
+      continue;
+    const double radius = 0.5 * distance[v];
+    const std::vector<double> from_here = surface.distances_from(v, radius).length;
+    const double relative_area = relative_area_around(surface, radius, from_here);
+    if(relative_area > largest_relative_area)
+      continue;
+    for(std::size_t w = 0; w < from_here.size(); ++w)
+      is_near[w] = is_near[w] || from_here[w] < radius;
+    Extremity e{int(v), distance[v], relative_area, {}};
+    for(const std::vector<double>& d : from_landmark)
+      e.distances.push_back(d[v]);
+    result.push_back(std::move(e));
+  }
+  return result;
+}
+
+// how much the distances of two extremities from their landmarks differ, over their mean
+inline double difference(const Extremity& a, const Extremity& b)
+{
+  double squares = 0, sum = 0;
+  const std::size_t n = a.distances.size();
+  for(std::size_t i = 0; i < n; ++i)
+  {
+    squares += (a.distances[i] - b.distances[i]) * (a.distances[i] - b.distances[i]);
+    sum += 0.5 * (a.distances[i] + b.distances[i]);
+  }
+  return std::sqrt(squares / double(n)) / (sum / double(n));
+}
+
+// Pairs of indices of extremities whose distances from corresponding landmarks are alike. Of neighbouring fingers
+// each is like several of the other hand: all are paired at once, so that the sum of the differences is least.
+inline std::vector<std::pair<int, int>> counterparts(const std::vector<Extremity>& a,
+                                                     const std::vector<Extremity>& b)
+{
+  typedef boost::property<boost::edge_weight_t, long> Weight;
+  typedef boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
+                                Weight>
+    Graph;
+  const double largest_difference = 0.25,
+               unit = 1e-9; // of weights, which the matching wants to be whole
+  Graph graph(a.size() + b.size());
+  for(std::size_t i = 0; i < a.size(); ++i)
+    for(std::size_t j = 0; j < b.size(); ++j)
+    {
+      const double gain = largest_difference - difference(a[i], b[j]);
+      if(gain > 0)
+        boost::add_edge(i, a.size() + j, Weight(2 * std::lround(gain / unit)), graph);
+    }
+  std::vector<boost::graph_traits<Graph>::vertex_descriptor> mate(a.size() + b.size());
+  boost::maximum_weighted_matching(graph, mate.data());
+  std::vector<std::pair<int, int>> result;
+  for(std::size_t i = 0; i < a.size(); ++i)
+    if(mate[i] != boost::graph_traits<Graph>::null_vertex())
+      result.emplace_back(int(i), int(mate[i] - a.size()));
+  return result;
+}
+
+} // namespace internal
+} // namespace Reference_constrained_optimization
+} // namespace CGAL
+
+#endif // CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_EXTREMITIES_H
