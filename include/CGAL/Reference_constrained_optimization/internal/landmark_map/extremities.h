@@ -41,7 +41,7 @@ inline double relative_area_around(const Cut_surface& surface,
   const Mesh& mesh = surface.mesh();
   const auto is_inside = [&](Mesh::Vertex_index v) { return distance_of_vertex[v] < radius; };
   const int fewest_vertices = 8;
-  int number = 0, euler_characteristic = 0;
+  int number = 0;
   for(const Mesh::Vertex_index v : mesh.vertices())
     if(is_inside(v))
     {
@@ -49,7 +49,7 @@ inline double relative_area_around(const Cut_surface& surface,
       if(mesh.is_border(v))
         return 1;
     }
-  euler_characteristic = number;
+  int euler_characteristic = number;
   for(const Mesh::Edge_index e : mesh.edges())
     euler_characteristic -= is_inside(mesh.vertex(e, 0)) && is_inside(mesh.vertex(e, 1));
   double sum = 0;
@@ -93,6 +93,9 @@ inline std::vector<Extremity> extremities(const Cut_surface& surface, int n)
   std::stable_sort(
     furthest.begin(), furthest.end(),
     [&](Cut_surface::Vertex a, Cut_surface::Vertex b) { return distance[a] > distance[b]; });
+  // each of them takes a time that is linear in the size of the mesh, and scans have many
+  const std::size_t largest_number = 200;
+  furthest.resize((std::min)(furthest.size(), largest_number));
   std::vector<char> is_near(mesh.number_of_vertices(), 0); // a further one
   std::vector<Extremity> result;
   for(const Cut_surface::Vertex v : furthest)
