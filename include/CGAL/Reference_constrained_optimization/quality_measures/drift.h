@@ -121,6 +121,15 @@ inline Directed_drift directed_drift(const Reference_surface& from, const Refere
   return result;
 }
 
+inline Drift mutual_drift(const Reference_surface& mesh, const Reference_surface& reference)
+{
+  Drift result;
+  result.mesh_to_reference = directed_drift(mesh, reference);
+  result.reference_to_mesh = directed_drift(reference, mesh);
+  result.reference_mean_edge_length = reference.mean_edge_length();
+  return result;
+}
+
 } // namespace internal
 
 /*!
@@ -152,11 +161,7 @@ Drift drift(const FaceGraph& mesh,
   const internal::Reference_surface m(internal::read_measured_mesh(mesh, np, "mesh"));
   const internal::Reference_surface r(
     internal::read_measured_mesh(reference, np_reference, "reference"));
-  Drift result;
-  result.mesh_to_reference = internal::directed_drift(m, r);
-  result.reference_to_mesh = internal::directed_drift(r, m);
-  result.reference_mean_edge_length = r.mean_edge_length();
-  return result;
+  return internal::mutual_drift(m, r);
 }
 
 } // namespace Reference_constrained_optimization

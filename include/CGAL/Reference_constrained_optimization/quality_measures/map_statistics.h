@@ -80,14 +80,13 @@ public:
       {0.337, 0.341, 0.322}, {0.597, 0.198, 0.205}, {0.203, 0.601, 0.196}, {0.195, 0.207, 0.598}};
     const double largest_gap = 3 * m_reference.mean_edge_length();
     const int n = m_reference.mesh().number_of_faces();
-    std::vector<char> is_uncovered(n, 0);
+    std::vector<char> is_uncovered(n, 1);
     double area = 0, hit_more = 0, not_hit = 0;
     Surface_point last;
     for(int f = 0; f < n; ++f)
     {
       const double sample_area = 0.5 * m_reference.face_normal(f).norm() / 4;
       area += 4 * sample_area;
-      is_uncovered[f] = 1;
       for(const Vector_3& barycentric : samples)
       {
         const Vector_3 x = m_reference.point(f, barycentric).position;
@@ -167,20 +166,10 @@ inline double collapsed_area(const Mesh_copy& source, const Mesh_copy& mesh)
   double area = 0, collapsed = 0;
   for(int f = 0; f < source.mesh.number_of_faces(); ++f)
   {
-    const auto area_in = [&](const std::vector<Vector_3>& points) {
-      double sum = 0;
-      for(const std::array<int, 3>& t : split_face(source.mesh, source.points, f))
-      {
-        const Vector_3& p = points[source.mesh.corner_vertex[t[0]]];
-        sum += 0.5 * (points[source.mesh.corner_vertex[t[1]]] - p)
-                       .cross(points[source.mesh.corner_vertex[t[2]]] - p)
-                       .norm();
-      }
-      return sum;
-    };
-    const double before = area_in(source.points);
+    const double before = face_vector_area(source.mesh, source.points, f).norm(),
+                 after = face_vector_area(source.mesh, mesh.points, f).norm();
     area += before;
-    collapsed += area_in(mesh.points) < smallest_part * scale * before ? before : 0;
+    collapsed += after < smallest_part * scale * before ? before : 0;
   }
   return collapsed / area;
 }
@@ -229,9 +218,7 @@ map_statistics(const SourceMesh& source,
   Map_statistics result;
   result.distortion = distortion_statistics(source, mesh, np_source, np, r.area());
   result.defects = orientation_defects(mesh, reference, np, np_reference);
-  result.drift.mesh_to_reference = internal::directed_drift(m, r);
-  result.drift.reference_to_mesh = internal::directed_drift(r, m);
-  result.drift.reference_mean_edge_length = r.mean_edge_length();
+  result.drift = internal::mutual_drift(m, r);
   internal::Coverage(m, r, result.drift.mesh_to_reference.maximum).measure(result);
   result.collapsed_area =
     internal::collapsed_area(internal::read_measured_mesh(source, np_source, "source"), copy);

@@ -90,22 +90,13 @@ public:
   const Mesh::Property_map<Edge, bool>& is_cut() const { return m_is_cut; }
   const std::vector<Vertex>& landmarks() const { return m_landmarks; }
   const std::vector<std::vector<Halfedge>>& arcs() const { return m_arcs; }
+  double scale() const { return m_scale; } // of lengths: to unit area
 
   // length of an edge on the surface scaled to unit area
   double length(Halfedge h) const
   {
     const auto &p = m_mesh.point(m_mesh.source(h)), &q = m_mesh.point(m_mesh.target(h));
     return m_scale * std::sqrt(CGAL::squared_distance(p, q));
-  }
-
-  // the same for the area of a face
-  double area(Mesh::Face_index f) const
-  {
-    const Halfedge h = m_mesh.halfedge(f);
-    return m_scale * m_scale *
-           std::sqrt(CGAL::squared_area(m_mesh.point(m_mesh.source(h)),
-                                        m_mesh.point(m_mesh.target(h)),
-                                        m_mesh.point(m_mesh.target(m_mesh.next(h)))));
   }
 
   void set_landmarks(const std::vector<int>& vertices)
@@ -181,9 +172,8 @@ public:
       split(m_mesh.halfedge(e), 0.5);
   }
 
-  // distances of all vertices from a landmark, without obstacles
+  // distances of all vertices from a landmark, or from any vertex up to a limit, without obstacles
   Distances distances(int landmark) const { return distances_from(m_landmarks[landmark]); }
-  // the same from any vertex, up to a limit
   Distances distances_from(Vertex v, double limit = std::numeric_limits<double>::infinity()) const
   {
     return search(

@@ -7,6 +7,8 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
 
+#include <CGAL/Polygon_mesh_processing/measure.h>
+
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/maximum_weighted_matching.hpp>
 
@@ -37,6 +39,7 @@ inline double relative_area_around(const Cut_surface& surface,
                                    double radius,
                                    const std::vector<double>& distance_of_vertex)
 {
+  namespace PMP = CGAL::Polygon_mesh_processing;
   typedef Cut_surface::Mesh Mesh;
   const Mesh& mesh = surface.mesh();
   const auto is_inside = [&](Mesh::Vertex_index v) { return distance_of_vertex[v] < radius; };
@@ -59,10 +62,12 @@ inline double relative_area_around(const Cut_surface& surface,
     const auto inside = std::count_if(vertices.begin(), vertices.end(), is_inside);
     euler_characteristic += inside == 3;
     if(inside > 0)
-      sum += double(inside) / 3 * surface.area(f);
+      sum += double(inside) / 3 * CGAL::to_double(PMP::face_area(f, mesh));
   }
   const double pi = 3.14159265358979323846;
-  return number < fewest_vertices || euler_characteristic != 1 ? 1 : sum / (pi * radius * radius);
+  return number < fewest_vertices || euler_characteristic != 1
+           ? 1
+           : sum * surface.scale() * surface.scale() / (pi * radius * radius);
 }
 
 // Those of a surface with landmarks among its first n vertices, the furthest first; of several that are close
