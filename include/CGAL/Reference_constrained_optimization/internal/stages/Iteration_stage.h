@@ -44,6 +44,8 @@ public:
       m_visits.visitor.on_iteration_begin(i);
       m_visits.round_solver.begin_iteration();
       m_visits.update_sums();
+      // where angles are bounded, later stages need the allowances more
+      settings.limits.uses_allowances = !m_visits.has_angle_criterion && before.defects() > 0;
       ++m_visits.result.number_of_iterations;
       const bool complete = visit_active_unless_interrupted();
       const Global_measure after = m_visits.measure();
