@@ -8,20 +8,21 @@
 #include "deformations.h"
 
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/corresponding_paths.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/polygon_flattening.h>
 
-#include <limits>
+#include <cmath>
 
 using namespace rco_test;
 
 // each path is passed in both directions, the border in one, and every side starts where the last
 // one ended
-void check_boundary(const internal::Landmark_tree& tree)
+void check_boundary(const internal::Cut_graph& tree)
 {
-  const std::vector<internal::Landmark_tree::Side> sides = tree.boundary();
+  const std::vector<internal::Cut_graph::Side> sides = tree.boundary().cycles.front();
   std::vector<int> forward(tree.arcs().size(), 0), backward(tree.arcs().size(), 0);
   const auto ends = [&](std::size_t i) {
-    const internal::Landmark_tree::Arc& arc = tree.arcs()[sides[i % sides.size()].arc];
+    const internal::Cut_graph::Arc& arc = tree.arcs()[sides[i % sides.size()].arc];
     return sides[i % sides.size()].is_forward ? std::make_pair(arc.from, arc.to)
                                               : std::make_pair(arc.to, arc.from);
   };
@@ -58,7 +59,7 @@ void test_landmark_trees()
   {
     const Scope scope("random tree " + std::to_string(k));
     const int border = k % 2 == 0 ? 0 : 3 + random.index(4), n = border + 2 + random.index(9);
-    internal::Landmark_tree tree(n);
+    internal::Cut_graph tree(n);
     std::vector<int> on_border;
     for(int i = 0; i < border; ++i)
       on_border.push_back(i);
@@ -79,8 +80,9 @@ bool check_flattening(const Shape& shape,
   internal::Cut_surface cut(copy_of(shape));
   cut.set_landmarks(landmarks);
   cut.split_chords();
-  internal::Landmark_tree tree{int(landmarks.size())};
-  const std::vector<int> border = cut.border_landmarks();
+  internal::Cut_graph tree{int(landmarks.size())};
+  const std::vector<int> border =
+    cut.number_of_borders() == 0 ? std::vector<int>() : cut.border_landmarks(0);
   if(!border.empty())
   {
     tree.add_border(border);
@@ -89,30 +91,20 @@ bool check_flattening(const Shape& shape,
   }
   for(const auto& e : edges)
   {
-    double least = std::numeric_limits<double>::infinity();
-    int from = 0, to = 0;
-    for(int s = 0; s < tree.number_of_sectors(e.first); ++s)
-    {
-      const internal::Cut_surface::Distances d = cut.distances(e.first, tree, s, e.second);
-      for(int t = 0; t < tree.number_of_sectors(e.second); ++t)
-        if(cut.length_to(e.second, tree, t, d) < least)
-        {
-          least = cut.length_to(e.second, tree, t, d);
-          from = s;
-          to = t;
-        }
-    }
+    const internal::Path_pair path = internal::corresponding_paths(
+      cut, cut, tree, {e}, {}, [](int, int, int, int) { return true; });
     // with all chords split there is always a way
-    if(!RCO_CHECK(std::isfinite(least)))
+    if(!RCO_CHECK(std::isfinite(path.length())))
       return false;
-    cut.trace_path(e.first, e.second, tree, to, cut.distances(e.first, tree, from, e.second));
-    tree.add_path(e.first, from, e.second, to);
+    RCO_CHECK(path.source.vertices == path.reference.vertices);
+    cut.cut_along(path.source.vertices);
+    tree.add_path(e.first, path.from_sector, e.second, path.to_sector);
   }
   check_boundary(tree);
 
-  const std::vector<internal::Landmark_tree::Side> sides = tree.boundary();
+  const std::vector<internal::Cut_graph::Side> sides = tree.boundary().cycles.front();
   std::vector<double> lengths;
-  for(const internal::Landmark_tree::Side& s : sides)
+  for(const internal::Cut_graph::Side& s : sides)
     lengths.push_back(cut.arc_length(s.arc));
   const auto corners = internal::Polygon_flattening::polygon(lengths);
   internal::Polygon_flattening map;

@@ -6,11 +6,12 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_CUT_SURFACE_H
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
-#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_tree.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_graph.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/split_edge.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/build_indexed_mesh.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/iterator.h>
 
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <queue>
 #include <string>
@@ -40,13 +42,6 @@ public:
   typedef Mesh::Halfedge_index Halfedge;
   typedef Mesh::Edge_index Edge;
 
-  // lengths of the shortest paths from a landmark within one of its sectors
-  struct Distances
-  {
-    std::vector<double> length;      // per vertex
-    std::vector<Vertex> predecessor; // per vertex
-  };
-
   // vertices keep their numbers; those that splitting adds come after them
   explicit Cut_surface(const Mesh_copy& copy, bool is_reversed = false)
   {
@@ -66,10 +61,8 @@ public:
     m_is_cut = m_mesh.add_property_map<Edge, bool>("e:is_cut", false).first;
     for(const Halfedge h : m_mesh.halfedges())
       if(m_mesh.is_border(h))
-      {
         m_is_taken[m_mesh.target(h)] = true;
-        m_border = h;
-      }
+    CGAL::Polygon_mesh_processing::extract_boundary_cycles(m_mesh, std::back_inserter(m_borders));
     m_scale = 1 / std::sqrt(surface_area(copy.mesh, copy.points));
   }
 
@@ -78,9 +71,10 @@ public:
     : m_mesh(other.m_mesh),
       m_is_taken(m_mesh.add_property_map<Vertex, bool>("v:is_taken", false).first),
       m_is_cut(m_mesh.add_property_map<Edge, bool>("e:is_cut", false).first),
-      m_border(other.m_border),
+      m_borders(other.m_borders),
       m_landmarks(other.m_landmarks),
       m_arcs(other.m_arcs),
+      m_landmark_distances(other.m_landmark_distances),
       m_scale(other.m_scale)
   {}
   Cut_surface& operator=(const Cut_surface&) = delete;
@@ -88,6 +82,8 @@ public:
   const Mesh& mesh() const { return m_mesh; }
   Mesh& mesh() { return m_mesh; }
   const Mesh::Property_map<Edge, bool>& is_cut() const { return m_is_cut; }
+  // whether it is a landmark, or on an arc or the border
+  bool is_taken(Vertex v) const { return m_is_taken[v]; }
   const std::vector<Vertex>& landmarks() const { return m_landmarks; }
   const std::vector<std::vector<Halfedge>>& arcs() const { return m_arcs; }
   double scale() const { return m_scale; } // of lengths: to unit area
@@ -127,15 +123,28 @@ public:
     return int(m_landmarks.size()) - 1;
   }
 
-  bool is_on_border(int landmark) const { return m_mesh.is_border(m_landmarks[landmark]); }
+  int number_of_borders() const { return int(m_borders.size()); }
 
-  // indices of the landmarks on the border, in the order of its half-edges
-  std::vector<int> border_landmarks() const
+  // of a landmark: the number of its border, or -1
+  int border_of(int landmark) const
+  {
+    const Halfedge border = border_halfedge_from(m_mesh, m_landmarks[landmark]);
+    if(border == Mesh::null_halfedge())
+      return -1;
+    for(const Halfedge h : CGAL::halfedges_around_face(border, m_mesh))
+    {
+      const auto found = std::find(m_borders.begin(), m_borders.end(), h);
+      if(found != m_borders.end())
+        return int(found - m_borders.begin());
+    }
+    return -1;
+  }
+
+  // indices of the landmarks on a border, in the order of its half-edges
+  std::vector<int> border_landmarks(int border) const
   {
     std::vector<int> result;
-    if(m_border == Mesh::null_halfedge())
-      return result;
-    for(const Halfedge h : CGAL::halfedges_around_face(m_border, m_mesh))
+    for(const Halfedge h : CGAL::halfedges_around_face(m_borders[border], m_mesh))
       for(std::size_t i = 0; i < m_landmarks.size(); ++i)
         if(m_landmarks[i] == m_mesh.target(h))
           result.push_back(int(i));
@@ -145,14 +154,13 @@ public:
   // length of the border from one of its landmarks to another, or once around to itself
   double border_length(int from, int to) const { return length(border_between(from, to)); }
 
-  bool border_is_empty() const { return m_border == Mesh::null_halfedge(); }
-
-  // the closest vertex of the border, with its distance
-  std::pair<double, Vertex> closest_on_border(const Distances& distances) const
+  // the closest vertex of a border, with its distance
+  std::pair<double, Vertex> closest_on_border(int border,
+                                              const std::vector<double>& distances) const
   {
     std::pair<double, Vertex> best(std::numeric_limits<double>::infinity(), Mesh::null_vertex());
-    for(const Halfedge h : CGAL::halfedges_around_face(m_border, m_mesh))
-      best = (std::min)(best, {distances.length[m_mesh.target(h)], m_mesh.target(h)});
+    for(const Halfedge h : CGAL::halfedges_around_face(m_borders[border], m_mesh))
+      best = (std::min)(best, {distances[m_mesh.target(h)], m_mesh.target(h)});
     return best;
   }
 
@@ -172,56 +180,56 @@ public:
       split(m_mesh.halfedge(e), 0.5);
   }
 
-  // distances of all vertices from a landmark, or from any vertex up to a limit, without obstacles
-  Distances distances(int landmark) const { return distances_from(m_landmarks[landmark]); }
-  Distances distances_from(Vertex v, double limit = std::numeric_limits<double>::infinity()) const
+  // lengths of the shortest paths along edges from a vertex to all others; infinite beyond a limit
+  std::vector<double> distances_from(Vertex v,
+                                     double limit = std::numeric_limits<double>::infinity()) const
   {
-    return search(
-      v, [](Vertex) { return false; }, [](Halfedge) { return true; }, {}, limit);
-  }
-  // distances from a landmark within a sector, over vertices that are not taken, of the vertices
-  // around another landmark, up to a limit; those of vertices further away are not all computed
-  Distances distances(int from,
-                      const Landmark_tree& tree,
-                      int sector,
-                      int to,
-                      double limit = std::numeric_limits<double>::infinity()) const
-  {
-    const std::vector<int> sector_of = sectors(from, tree);
-    const Vertex start = m_landmarks[from];
-    std::vector<Vertex> goals;
-    for(const Halfedge h : outgoing(to))
-      if(!m_is_taken[m_mesh.target(h)])
-        goals.push_back(m_mesh.target(h));
-    return search(
-      start, [&](Vertex v) { return m_is_taken[v] && v != start; },
-      [&](Halfedge h) { return sector_of[rank(from, h)] == sector; }, goals, limit);
-  }
-
-  // length of the path to a landmark that arrives there within a sector; infinite if there is none
-  double
-  length_to(int landmark, const Landmark_tree& tree, int sector, const Distances& distances) const
-  {
-    return last_step(landmark, tree, sector, distances).first;
-  }
-
-  // cuts along the path that arrives within a sector, from `from` to `to`
-  void
-  trace_path(int from, int to, const Landmark_tree& tree, int sector, const Distances& distances)
-  {
-    const Halfedge last = last_step(to, tree, sector, distances).second;
-    std::vector<Halfedge> arc(1, last);
-    Vertex v = m_mesh.source(last);
-    while(v != m_landmarks[from])
+    typedef std::pair<double, Vertex> Reached;
+    std::vector<double> result(m_mesh.number_of_vertices(),
+                               std::numeric_limits<double>::infinity());
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<Reached>> queue;
+    result[v] = 0;
+    queue.push({0, v});
+    while(!queue.empty() && !(queue.top().first > limit))
     {
-      const Vertex u = distances.predecessor[v];
-      arc.push_back(m_mesh.halfedge(u, v));
-      m_is_taken[v] = true;
-      v = u;
+      const Reached reached = queue.top();
+      queue.pop();
+      if(!(reached.first > result[reached.second]))
+        for(const Halfedge h : CGAL::halfedges_around_source(reached.second, m_mesh))
+        {
+          const double sum = reached.first + length(h);
+          if(sum < result[m_mesh.target(h)])
+          {
+            result[m_mesh.target(h)] = sum;
+            queue.push({sum, m_mesh.target(h)});
+          }
+        }
     }
-    std::reverse(arc.begin(), arc.end());
-    for(const Halfedge h : arc)
-      m_is_cut[m_mesh.edge(h)] = true;
+    return result;
+  }
+
+  // measures the distances of all vertices from the landmarks; vertices that are added are interpolated
+  void measure_landmark_distances()
+  {
+    m_landmark_distances.clear();
+    for(const Vertex v : m_landmarks)
+      m_landmark_distances.push_back(distances_from(v));
+  }
+  const std::vector<std::vector<double>>& landmark_distances() const
+  {
+    return m_landmark_distances;
+  }
+
+  // cuts along a path between landmarks
+  void cut_along(const std::vector<Vertex>& path)
+  {
+    std::vector<Halfedge> arc;
+    for(std::size_t i = 1; i < path.size(); ++i)
+    {
+      arc.push_back(m_mesh.halfedge(path[i - 1], path[i]));
+      m_is_taken[path[i]] = true;
+      m_is_cut[m_mesh.edge(arc.back())] = true;
+    }
     std::vector<Edge> chords;
     for(const Halfedge a : arc)
       for(const Halfedge h : CGAL::halfedges_around_target(a, m_mesh))
@@ -232,6 +240,19 @@ public:
     for(const Edge e : chords)
       split(m_mesh.halfedge(e), 0.5);
     m_arcs.push_back(arc);
+  }
+
+  // the half-edges that leave a landmark within each of its sectors
+  std::vector<std::vector<Halfedge>> halfedges_of_sectors(int landmark,
+                                                          const Cut_graph& graph) const
+  {
+    const std::vector<Halfedge> around = outgoing(landmark);
+    const std::vector<int> sector_of = sectors(landmark, graph);
+    std::vector<std::vector<Halfedge>> result(graph.number_of_sectors(landmark));
+    for(std::size_t i = 0; i < around.size(); ++i)
+      if(sector_of[i] >= 0)
+        result[sector_of[i]].push_back(around[i]);
+    return result;
   }
 
 private:
@@ -262,8 +283,11 @@ private:
   // splits the edge at the fraction t of its length, and the faces at it
   Vertex split(Halfedge h, double t)
   {
-    const Vertex v = split_edge_and_faces(m_mesh, h, t);
+    const Vertex from = m_mesh.source(h), to = m_mesh.target(h),
+                 v = split_edge_and_faces(m_mesh, h, t);
     m_is_taken[v] = false;
+    for(std::vector<double>& d : m_landmark_distances)
+      d.push_back((1 - t) * d[from] + t * d[to]);
     return v;
   }
 
@@ -285,17 +309,11 @@ private:
     return result;
   }
 
-  std::size_t rank(int landmark, Halfedge h) const
-  {
-    const std::vector<Halfedge> around = outgoing(landmark);
-    return std::size_t(std::find(around.begin(), around.end(), h) - around.begin());
-  }
-
   // the sector of each half-edge that leaves a landmark; -1 for those of arcs
-  std::vector<int> sectors(int landmark, const Landmark_tree& tree) const
+  std::vector<int> sectors(int landmark, const Cut_graph& graph) const
   {
     const std::vector<Halfedge> around = outgoing(landmark);
-    const std::vector<Landmark_tree::Stub>& stubs = tree.stubs(landmark);
+    const std::vector<Cut_graph::Stub>& stubs = graph.stubs(landmark);
     std::vector<int> stub_of(around.size(), -1);
     for(std::size_t s = 0; s < stubs.size(); ++s)
     {
@@ -317,78 +335,13 @@ private:
     return result;
   }
 
-  // shortest paths (Dijkstra), up to a limit or until all goals, if there are any, are reached
-  template <typename Blocked, typename FirstStep>
-  Distances search(Vertex start,
-                   const Blocked& is_blocked,
-                   const FirstStep& may_start,
-                   const std::vector<Vertex>& goals,
-                   double limit = std::numeric_limits<double>::infinity()) const
-  {
-    typedef std::pair<double, Vertex> Reached;
-    Distances d;
-    d.length.assign(m_mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-    d.predecessor.assign(m_mesh.number_of_vertices(), Mesh::null_vertex());
-    std::vector<char> is_goal(m_mesh.number_of_vertices(), 0);
-    for(const Vertex v : goals)
-      is_goal[v] = 1;
-    std::size_t missing = goals.size();
-    std::priority_queue<Reached, std::vector<Reached>, std::greater<Reached>> queue;
-    d.length[start] = 0;
-    queue.push({0, start});
-    while(!queue.empty())
-    {
-      const auto [length_to_v, v] = queue.top();
-      queue.pop();
-      if(length_to_v > limit)
-        break;
-      if(length_to_v > d.length[v])
-        continue;
-      if(is_goal[v])
-      {
-        is_goal[v] = 0;
-        if(--missing == 0)
-          break;
-      }
-      for(const Halfedge h : CGAL::halfedges_around_source(v, m_mesh))
-      {
-        const Vertex w = m_mesh.target(h);
-        const double sum = length_to_v + length(h);
-        if(sum < d.length[w] && !is_blocked(w) && (v != start || may_start(h)))
-        {
-          d.length[w] = sum;
-          d.predecessor[w] = v;
-          queue.push({sum, w});
-        }
-      }
-    }
-    return d;
-  }
-
-  std::pair<double, Halfedge>
-  last_step(int landmark, const Landmark_tree& tree, int sector, const Distances& distances) const
-  {
-    const std::vector<Halfedge> around = outgoing(landmark);
-    const std::vector<int> sector_of = sectors(landmark, tree);
-    std::pair<double, Halfedge> best(std::numeric_limits<double>::infinity(),
-                                     Mesh::null_halfedge());
-    for(std::size_t i = 0; i < around.size(); ++i)
-      if(sector_of[i] == sector)
-      {
-        const Vertex v = m_mesh.target(around[i]);
-        const double sum = distances.length[v] + length(around[i]);
-        if(!m_is_taken[v] && sum < best.first)
-          best = {sum, m_mesh.opposite(around[i])};
-      }
-    return best;
-  }
-
   Mesh m_mesh;
   Mesh::Property_map<Vertex, bool> m_is_taken;
   Mesh::Property_map<Edge, bool> m_is_cut;
-  Halfedge m_border = Mesh::null_halfedge();
+  std::vector<Halfedge> m_borders; // one of each
   std::vector<Vertex> m_landmarks;
-  std::vector<std::vector<Halfedge>> m_arcs; // in the order of the tree
+  std::vector<std::vector<Halfedge>> m_arcs;             // in the order of the graph
+  std::vector<std::vector<double>> m_landmark_distances; // per landmark and vertex
   double m_scale = 1;
 };
 

@@ -7,9 +7,12 @@
 
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/Symmetric_Dirichlet_density.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_graph.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_tree.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Spanning_trees.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/border_landmarks.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/corresponding_paths.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/counterparts.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/extremities.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/polygon_flattening.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/surface_topology.h>
@@ -29,7 +32,7 @@ namespace Reference_constrained_optimization {
 namespace internal {
 
 // A map between two surfaces from landmarks: both are cut along trees of paths with the same order around
-// the landmarks, flattened to the same convex polygon, and the two maps are composed.
+// the landmarks, flattened to the same convex polygon, and the two maps are composed. Handles are opened by further paths.
 class Landmark_map
 {
 public:
@@ -46,11 +49,15 @@ public:
       m_reference(reference, are_opposite(source, reference)),
       m_number_of_reference_points(int(reference.points.size()))
   {
-    const bool source_is_closed = is_sphere(source, m_source, "source");
-    const bool reference_is_closed = is_sphere(reference, m_reference, "reference");
-    if(source_is_closed != reference_is_closed)
-      throw Invalid_input(std::string("source and reference: one of them is closed, the other (") +
-                          (source_is_closed ? "reference" : "source") + ") has a border");
+    const Surface_topology a = topology(source, m_source, "source"),
+                           b = topology(reference, m_reference, "reference");
+    const auto text = [](const Surface_topology& t) {
+      return "genus " + std::to_string(t.genus) + " and " + std::to_string(t.borders) + " borders";
+    };
+    if(a.genus != b.genus || a.borders != b.borders)
+      throw Invalid_input("source and reference: the source has " + text(a) +
+                          ", the reference has " + text(b) + ", but these must be the same");
+    m_genus = a.genus;
     m_area_ratio =
       surface_area(reference.mesh, reference.points) / surface_area(source.mesh, source.points);
   }
@@ -60,13 +67,8 @@ public:
   {
     m_source.set_landmarks(source);
     m_reference.set_landmarks(reference);
-    for(std::size_t i = 0; i < source.size(); ++i)
-      if(m_source.is_on_border(int(i)) != m_reference.is_on_border(int(i)))
-        throw Invalid_input("landmarks: of pair " + std::to_string(i) +
-                            " only one vertex is on the border");
+    m_borders = set_border_landmarks(m_source, m_reference);
     measure_distances();
-    if(!m_source.border_is_empty())
-      set_border();
     m_source.split_chords();
     m_reference.split_chords();
   }
@@ -108,7 +110,14 @@ public:
                                    internal::extremities(m_reference, m_number_of_reference_points);
     Extremities result;
     std::vector<char> is_paired_a(a.size(), 0), is_paired_b(b.size(), 0);
-    for(const std::pair<int, int>& p : counterparts(a, b))
+    const auto distances = [](const std::vector<Extremity>& extremities) {
+      std::vector<std::vector<double>> d;
+      for(const Extremity& e : extremities)
+        d.push_back(e.distances);
+      return d;
+    };
+    const double largest_difference = 0.25;
+    for(const std::pair<int, int>& p : counterparts(distances(a), distances(b), largest_difference))
     {
       result.pairs.emplace_back(a[p.first].vertex, b[p.second].vertex);
       is_paired_a[p.first] = is_paired_b[p.second] = 1;
@@ -128,72 +137,12 @@ private:
   {
     const std::size_t n = m_source.landmarks().size();
     m_distance.assign(n, std::vector<double>(n, 0));
+    m_source.measure_landmark_distances();
+    m_reference.measure_landmark_distances();
     for(std::size_t i = 0; i < n; ++i)
-    {
-      const Cut_surface::Distances a = m_source.distances(int(i));
-      const Cut_surface::Distances b = m_reference.distances(int(i));
       for(std::size_t j = 0; j < n; ++j)
-        m_distance[i][j] = a.length[m_source.landmarks()[j]] + b.length[m_reference.landmarks()[j]];
-    }
-  }
-
-  // adds landmarks on the borders up to three, and checks their order
-  void set_border()
-  {
-    if(m_source.border_landmarks().empty())
-      connect_to_border();
-    std::vector<int> order = m_source.border_landmarks();
-    if(order.size() < 3)
-    {
-      // a border of few arcs is divided into arcs of equal length
-      const int parts = order.size() == 1 ? 3 : 2;
-      std::vector<double> lengths[2];
-      for(std::size_t i = 0; i < order.size(); ++i)
-        for(int s = 0; s < 2; ++s)
-        {
-          const Cut_surface& surface = s == 0 ? m_source : m_reference;
-          lengths[s].push_back(surface.border_length(order[i], order[(i + 1) % order.size()]));
-        }
-      for(std::size_t i = 0; i < order.size(); ++i)
-        for(int part = 1; part < parts; ++part)
-        {
-          m_source.add_border_landmark(order[i], lengths[0][i] * part / parts);
-          m_reference.add_border_landmark(order[i], lengths[1][i] * part / parts);
-        }
-      measure_distances();
-    }
-    m_border = m_source.border_landmarks();
-    std::vector<int> other = m_reference.border_landmarks();
-    std::rotate(other.begin(), std::find(other.begin(), other.end(), m_border.front()),
-                other.end());
-    if(other != m_border)
-    {
-      std::reverse(other.begin() + 1, other.end());
-      throw Invalid_input(std::string("landmarks: those on the borders are not in the same order") +
-                          (other == m_border ? ", but in the opposite one: is one of the surfaces "
-                                               "oriented the other way round?"
-                                             : ""));
-    }
-  }
-
-  // connects the landmark that is closest to the borders to a new one there
-  void connect_to_border()
-  {
-    double least = std::numeric_limits<double>::infinity();
-    std::pair<Cut_surface::Vertex, Cut_surface::Vertex> best;
-    for(std::size_t i = 0; i < m_distance.size(); ++i)
-    {
-      const auto a = m_source.closest_on_border(m_source.distances(int(i)));
-      const auto b = m_reference.closest_on_border(m_reference.distances(int(i)));
-      if(a.first + b.first < least)
-      {
-        least = a.first + b.first;
-        best = {a.second, b.second};
-      }
-    }
-    m_source.add_landmark(best.first);
-    m_reference.add_landmark(best.second);
-    measure_distances();
+        m_distance[i][j] = m_source.landmark_distances()[i][m_source.landmarks()[j]] +
+                           m_reference.landmark_distances()[i][m_reference.landmarks()[j]];
   }
 
   // Candidate trees, the best first. Tracing paths is cheap, so that many trees are compared by their
@@ -202,7 +151,7 @@ private:
   std::vector<Landmark_pairs> candidate_trees(int number, unsigned int seed) const
   {
     const int trees_per_layout = 4;
-    Spanning_trees trees(m_distance, m_border, seed);
+    Spanning_trees trees(m_distance, m_borders, seed);
     std::vector<std::pair<double, Landmark_pairs>> candidates;
     for(int k = 0; k < trees_per_layout * number; ++k)
     {
@@ -210,20 +159,12 @@ private:
       const auto is_same = [&](const auto& other) { return other.second == edges; };
       if(std::find_if(candidates.begin(), candidates.end(), is_same) != candidates.end())
         continue;
-      Cut_surface source(m_source), reference(m_reference);
-      Landmark_tree tree(int(source.landmarks().size()));
-      double cost = std::numeric_limits<double>::infinity();
-      if(trace_tree(edges, tree, source, reference))
-      {
-        double length = 0, direct = 0;
-        for(std::size_t i = 0; i < tree.arcs().size(); ++i)
-          if(!tree.arcs()[i].is_border)
-            length += source.arc_length(int(i)) + reference.arc_length(int(i));
-        for(const auto& edge : edges)
-          direct += m_distance[edge.first][edge.second];
-        cost = edges.empty() ? 0 : length * (length / direct);
-      }
-      candidates.emplace_back(cost, std::move(edges));
+      Cut cut(m_source, m_reference);
+      double direct = 0;
+      for(const auto& edge : edges)
+        direct += m_distance[edge.first][edge.second];
+      const double length = trace_tree(edges, cut);
+      candidates.emplace_back(edges.empty() ? 0 : length * (length / direct), std::move(edges));
     }
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -234,86 +175,90 @@ private:
     return result;
   }
 
-  // false if one of the paths does not exist
-  bool trace_tree(const Landmark_pairs& edges,
-                  Landmark_tree& tree,
-                  Cut_surface& source,
-                  Cut_surface& reference) const
+  // both surfaces, cut along graphs of the same combinatorics
+  struct Cut
   {
-    if(!m_border.empty())
+    Cut_surface source, reference;
+    Cut_graph graph;
+    Cut(const Cut_surface& a, const Cut_surface& b)
+      : source(a),
+        reference(b),
+        graph(int(a.landmarks().size()))
+    {}
+
+    // cuts along the shortest pair of paths, and returns its length; it is infinite if there is none
+    template <typename IsAllowed>
+    double cut_along_path(const Landmark_pairs& ends,
+                          const std::vector<Crossed_edges> (&curves)[2],
+                          const IsAllowed& is_allowed)
     {
-      tree.add_border(m_border);
-      for(const Landmark_tree::Arc& arc : tree.arcs())
+      const Path_pair p = corresponding_paths(source, reference, graph, ends, curves, is_allowed);
+      if(std::isfinite(p.length()))
       {
-        source.trace_border_arc(arc.from, arc.to);
-        reference.trace_border_arc(arc.from, arc.to);
+        source.cut_along(p.source.vertices);
+        reference.cut_along(p.reference.vertices);
+        graph.add_path(p.from, p.from_sector, p.to, p.to_sector);
       }
+      return p.length();
     }
+  };
+
+  // cuts along the borders and a tree, and returns the length of its paths
+  double trace_tree(const Landmark_pairs& edges, Cut& cut) const
+  {
+    for(const std::vector<int>& border : m_borders)
+      cut.graph.add_border(border);
+    for(const Cut_graph::Arc& arc : cut.graph.arcs())
+    {
+      cut.source.trace_border_arc(arc.from, arc.to);
+      cut.reference.trace_border_arc(arc.from, arc.to);
+    }
+    double length = 0;
     for(const auto& edge : edges)
-      if(!trace_path(edge.first, edge.second, tree, source, reference))
+      if(std::isfinite(length))
+        length += cut.cut_along_path({edge}, {}, [](int, int, int, int) { return true; });
+    return length;
+  }
+
+  // Opens the handles by two paths for each: one that does not separate the surface, whose boundary is two
+  // cycles then, and one between these. False if a path does not exist.
+  bool open_handles(Cut& cut) const
+  {
+    Landmark_pairs all;
+    const int n = int(m_source.landmarks().size());
+    for(int i = 0; i < n; ++i)
+      for(int j = i + 1; j < n; ++j)
+        all.emplace_back(i, j);
+    for(int handle = 0; handle < m_genus; ++handle)
+    {
+      if(!std::isfinite(
+           cut.cut_along_path(all, {closed_curves(cut.source), closed_curves(cut.reference)},
+                              [](int, int, int, int) { return true; })))
         return false;
+      const std::vector<std::vector<int>> cycle = cut.graph.boundary().cycle_of_sector;
+      if(!std::isfinite(cut.cut_along_path(all, {}, [&](int from, int s, int to, int t) {
+           return cycle[from][s] != cycle[to][t];
+         })))
+        return false;
+    }
     return true;
   }
 
   // the points for one tree; false if one of the surfaces could not be flattened bijectively
   bool map_along(const Landmark_pairs& edges, std::vector<Vector_3>& points) const
   {
-    Cut_surface source(m_source), reference(m_reference);
-    Landmark_tree tree(int(source.landmarks().size()));
-    if(!trace_tree(edges, tree, source, reference))
+    Cut cut(m_source, m_reference);
+    if(!std::isfinite(trace_tree(edges, cut)) || !open_handles(cut))
       return false;
-
-    const std::vector<Landmark_tree::Side> sides = tree.boundary();
+    const std::vector<Cut_graph::Side> sides = cut.graph.boundary().cycles.front();
     std::vector<double> lengths;
-    for(const Landmark_tree::Side& side : sides)
-      lengths.push_back(source.arc_length(side.arc) + reference.arc_length(side.arc));
+    for(const Cut_graph::Side& side : sides)
+      lengths.push_back(cut.source.arc_length(side.arc) + cut.reference.arc_length(side.arc));
     const auto corners = Polygon_flattening::polygon(lengths);
     Polygon_flattening source_map, reference_map;
-    return source_map.flatten(source, sides, corners) &&
-           reference_map.flatten(reference, sides, corners) &&
-           Polygon_transfer(source, source_map, reference, reference_map).transfer(points);
-  }
-
-  // Traces corresponding paths: of all sectors between the paths at both ends, those are chosen in which
-  // the sum of the lengths on the two surfaces is smallest.
-  static bool
-  trace_path(int from, int to, Landmark_tree& tree, Cut_surface& source, Cut_surface& reference)
-  {
-    double least = std::numeric_limits<double>::infinity();
-    int best_from = 0, best_to = 0;
-    std::pair<Cut_surface::Distances, Cut_surface::Distances> best;
-    for(int s = 0; s < tree.number_of_sectors(from); ++s)
-    {
-      std::pair<Cut_surface::Distances, Cut_surface::Distances> distances;
-      distances.first = source.distances(from, tree, s, to, least);
-      double on_source = std::numeric_limits<double>::infinity();
-      for(int t = 0; t < tree.number_of_sectors(to); ++t)
-        on_source = (std::min)(on_source, source.length_to(to, tree, t, distances.first));
-      if(!(on_source < least))
-        continue;
-      distances.second = reference.distances(from, tree, s, to, least - on_source);
-      bool is_best = false;
-      for(int t = 0; t < tree.number_of_sectors(to); ++t)
-      {
-        const double sum = source.length_to(to, tree, t, distances.first) +
-                           reference.length_to(to, tree, t, distances.second);
-        if(sum < least)
-        {
-          least = sum;
-          best_from = s;
-          best_to = t;
-          is_best = true;
-        }
-      }
-      if(is_best)
-        best = std::move(distances);
-    }
-    if(!std::isfinite(least))
-      return false;
-    source.trace_path(from, to, tree, best_to, best.first);
-    reference.trace_path(from, to, tree, best_to, best.second);
-    tree.add_path(from, best_from, to, best_to);
-    return true;
+    return source_map.flatten(cut.source, sides, corners) &&
+           reference_map.flatten(cut.reference, sides, corners) &&
+           Polygon_transfer(cut.source, source_map, cut.reference, reference_map).transfer(points);
   }
 
   // mean of the symmetric Dirichlet density; single triangles count up to a cap
@@ -342,9 +287,10 @@ private:
   const Mesh_copy& m_source_copy;
   Cut_surface m_source, m_reference;
   int m_number_of_reference_points;
+  int m_genus = 0;
   double m_area_ratio = 1;
   std::vector<std::vector<double>> m_distance; // between landmarks, on both surfaces together
-  std::vector<int> m_border;                   // landmarks on the border, in their order
+  std::vector<std::vector<int>> m_borders;     // landmarks on each, in their order
 };
 
 } // namespace internal

@@ -26,15 +26,19 @@ typedef std::vector<std::pair<int, int>> Landmark_pairs;
 class Spanning_trees
 {
 public:
-  // nodes of `connected` need no connection among one another
+  // nodes of a group of `connected` need no connection among one another
   Spanning_trees(std::vector<std::vector<double>> distance,
-                 std::vector<int> connected,
+                 const std::vector<std::vector<int>>& connected,
                  unsigned int seed)
     : m_distance(std::move(distance)),
-      m_connected(std::move(connected)),
       m_random(seed)
   {
     const std::size_t n = m_distance.size();
+    for(std::size_t i = 0; i < n; ++i)
+      m_group.push_back({int(i)});
+    for(const std::vector<int>& group : connected)
+      for(const int i : group)
+        m_group[i] = group;
     double least = std::numeric_limits<double>::infinity();
     for(std::size_t i = 0; i < n; ++i)
     {
@@ -44,9 +48,11 @@ public:
       if(sum < least)
       {
         least = sum;
-        m_center = int(i);
+        m_root = int(i);
       }
     }
+    if(!connected.empty())
+      m_root = connected.front().front();
   }
 
   // the k-th tree: the shortest, one halfway to a star around the central landmark, then random ones
@@ -69,16 +75,14 @@ private:
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> from_root(n, infinity);
     std::vector<char> is_in(n, 0);
-    for(const int c : m_connected)
-    {
-      is_in[c] = 1;
-      from_root[c] = 0;
-    }
-    if(m_connected.empty())
-    {
-      is_in[m_center] = 1;
-      from_root[m_center] = 0;
-    }
+    const auto add = [&](int i, double length) {
+      for(const int j : m_group[i])
+      {
+        is_in[j] = 1;
+        from_root[j] = length;
+      }
+    };
+    add(m_root, 0);
     Landmark_pairs tree;
     while(true)
     {
@@ -93,8 +97,7 @@ private:
           }
       if(best.first < 0)
         break;
-      is_in[best.second] = 1;
-      from_root[best.second] = from_root[best.first] + d[best.first][best.second];
+      add(best.second, from_root[best.first] + d[best.first][best.second]);
       tree.push_back(best);
     }
     std::stable_sort(tree.begin(), tree.end(),
@@ -105,9 +108,9 @@ private:
   }
 
   std::vector<std::vector<double>> m_distance;
-  std::vector<int> m_connected;
+  std::vector<std::vector<int>> m_group; // per node
   CGAL::Random m_random;
-  int m_center = 0;
+  int m_root = 0;
 };
 
 } // namespace internal

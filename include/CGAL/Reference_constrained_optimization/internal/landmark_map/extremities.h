@@ -9,9 +9,6 @@
 
 #include <CGAL/Polygon_mesh_processing/measure.h>
 
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/maximum_weighted_matching.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -76,14 +73,11 @@ inline std::vector<Extremity> extremities(const Cut_surface& surface, int n)
 {
   const double smallest_distance = 0.06, largest_relative_area = 0.6;
   const Cut_surface::Mesh& mesh = surface.mesh();
-  std::vector<std::vector<double>> from_landmark;
+  const std::vector<std::vector<double>>& from_landmark = surface.landmark_distances();
   std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-  for(std::size_t i = 0; i < surface.landmarks().size(); ++i)
-  {
-    from_landmark.push_back(surface.distances(int(i)).length);
+  for(const std::vector<double>& d : from_landmark)
     for(std::size_t v = 0; v < distance.size(); ++v)
-      distance[v] = (std::min)(distance[v], from_landmark.back()[v]);
-  }
+      distance[v] = (std::min)(distance[v], d[v]);
   std::vector<Cut_surface::Vertex> furthest;
   for(const Cut_surface::Vertex v : mesh.vertices())
   {
@@ -108,7 +102,7 @@ inline std::vector<Extremity> extremities(const Cut_surface& surface, int n)
     if(is_near[v])
       continue;
     const double radius = 0.5 * distance[v];
-    const std::vector<double> from_here = surface.distances_from(v, radius).length;
+    const std::vector<double> from_here = surface.distances_from(v, radius);
     const double relative_area = relative_area_around(surface, radius, from_here);
     if(relative_area > largest_relative_area)
       continue;
@@ -119,47 +113,6 @@ inline std::vector<Extremity> extremities(const Cut_surface& surface, int n)
       e.distances.push_back(d[v]);
     result.push_back(std::move(e));
   }
-  return result;
-}
-
-// how much the distances of two extremities from their landmarks differ, over their mean
-inline double difference(const Extremity& a, const Extremity& b)
-{
-  double squares = 0, sum = 0;
-  const std::size_t n = a.distances.size();
-  for(std::size_t i = 0; i < n; ++i)
-  {
-    squares += (a.distances[i] - b.distances[i]) * (a.distances[i] - b.distances[i]);
-    sum += 0.5 * (a.distances[i] + b.distances[i]);
-  }
-  return std::sqrt(squares / double(n)) / (sum / double(n));
-}
-
-// Pairs of indices of extremities whose distances from corresponding landmarks are alike. Of neighbouring fingers
-// each is like several of the other hand: all are paired at once, so that the sum of the differences is least.
-inline std::vector<std::pair<int, int>> counterparts(const std::vector<Extremity>& a,
-                                                     const std::vector<Extremity>& b)
-{
-  typedef boost::property<boost::edge_weight_t, long> Weight;
-  typedef boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
-                                Weight>
-    Graph;
-  const double largest_difference = 0.25,
-               unit = 1e-9; // of weights, which the matching wants to be whole
-  Graph graph(a.size() + b.size());
-  for(std::size_t i = 0; i < a.size(); ++i)
-    for(std::size_t j = 0; j < b.size(); ++j)
-    {
-      const double gain = largest_difference - difference(a[i], b[j]);
-      if(gain > 0)
-        boost::add_edge(i, a.size() + j, Weight(2 * std::lround(gain / unit)), graph);
-    }
-  std::vector<boost::graph_traits<Graph>::vertex_descriptor> mate(a.size() + b.size());
-  boost::maximum_weighted_matching(graph, mate.data());
-  std::vector<std::pair<int, int>> result;
-  for(std::size_t i = 0; i < a.size(); ++i)
-    if(mate[i] != boost::graph_traits<Graph>::null_vertex())
-      result.emplace_back(int(i), int(mate[i] - a.size()));
   return result;
 }
 

@@ -5,8 +5,8 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_POLYGON_FLATTENING_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_POLYGON_FLATTENING_H
 
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_graph.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
-#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Landmark_tree.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/compatibility.h>
 
 #include <CGAL/Eigen_solver_traits.h>
@@ -64,7 +64,7 @@ public:
 
   // false if no map that is bijective, by exact predicates, was found
   bool flatten(Cut_surface& surface,
-               const std::vector<Landmark_tree::Side>& sides,
+               const std::vector<Cut_graph::Side>& sides,
                const std::vector<Point_2>& corners)
   {
     namespace SMP = CGAL::Surface_mesh_parameterization;
@@ -118,7 +118,7 @@ private:
     });
   }
 
-  void set_border_points(const std::vector<Landmark_tree::Side>& sides,
+  void set_border_points(const std::vector<Cut_graph::Side>& sides,
                          const std::vector<Point_2>& corners)
   {
     m_border.clear();

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -46,8 +45,14 @@ inline bool are_opposite(const Mesh_copy& source, const Mesh_copy& reference)
   return volume(source) * volume(reference) < 0;
 }
 
-// Whether a surface is a sphere. Throws Invalid_input unless it is that or a disk, in one piece.
-inline bool is_sphere(const Mesh_copy& copy, const Cut_surface& surface, const std::string& name)
+struct Surface_topology
+{
+  int genus, borders;
+};
+
+// Throws Invalid_input if the surface has several components.
+inline Surface_topology
+topology(const Mesh_copy& copy, const Cut_surface& surface, const std::string& name)
 {
   namespace PMP = CGAL::Polygon_mesh_processing;
   const Cut_surface::Mesh& mesh = surface.mesh();
@@ -57,17 +62,12 @@ inline bool is_sphere(const Mesh_copy& copy, const Cut_surface& surface, const s
   if(components != 1)
     throw Invalid_input(name + ": has " + std::to_string(components) +
                         " connected components, but must have one");
-  std::vector<Cut_surface::Halfedge> borders;
-  extract_boundary_cycles(mesh, std::back_inserter(borders));
   int vertices = 0;
   for(int v = 0; v < copy.mesh.number_of_vertices(); ++v)
     vertices += !copy.mesh.is_isolated(v);
-  const int characteristic = vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces());
-  if(borders.size() > 1 || characteristic != 2 - int(borders.size()))
-    throw Invalid_input(name + ": has " + std::to_string(borders.size()) + " borders and genus " +
-                        std::to_string((2 - characteristic - int(borders.size())) / 2) +
-                        ", but must be a closed surface of genus 0 or a disk");
-  return borders.empty();
+  const int characteristic = vertices - int(mesh.number_of_edges()) + int(mesh.number_of_faces()),
+            borders = surface.number_of_borders();
+  return {(2 - characteristic - borders) / 2, borders};
 }
 
 } // namespace internal
