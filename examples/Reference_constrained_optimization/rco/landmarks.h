@@ -40,6 +40,8 @@ inline Landmarks read_landmarks(const std::string& file, const Mesh& source, con
     landmarks.emplace_back(Mesh::Vertex_index(Mesh::size_type(v)),
                            Mesh::Vertex_index(Mesh::size_type(w)));
   }
+  if(landmarks.empty())
+    throw Failure(Outcome::unreadable_file, file + " has no landmark");
   return landmarks;
 }
 

@@ -6,6 +6,7 @@
 
 #include "mesh.h"
 #include "options.h"
+#include "soft_landmarks.h"
 
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Reference_constrained_optimization/quality_measures/angles.h>
@@ -120,6 +121,15 @@ inline void add_map(Measures& m, const RCO::Map_statistics& map)
   m.figure("collapsed_area", "source, part that shrinks below a thousandth", 5, map.collapsed_area);
 }
 
+// of landmarks from their counterparts; an objective if they are pulled at all
+inline void
+add_landmarks(Measures& m, const Landmark_distances& distances, double unit, double weight)
+{
+  m.smaller_is_better(weight > 0 ? Role::aim : Role::figure, "mean_landmark_distance",
+                      "distance of landmarks (edges of reference), mean", 3, distances.mean / unit);
+  m.figure("maximum_landmark_distance", "  maximum", 3, distances.maximum / unit);
+}
+
 // the relative change of the volume that is enclosed; 0 for surfaces with a border and for polygons
 inline double volume_change(const Mesh& mesh, const Mesh& reference)
 {
@@ -168,11 +178,12 @@ inline void add_shape(Measures& m, const Mesh& mesh, const Mesh* reference, cons
   m.let_pass(small_part);
 }
 
-// Measures a mesh against its reference, null if that is the mesh itself; the source serves maps only.
+// Measures a mesh against its reference, null if that is the mesh itself; source and landmarks serve maps only.
 // Measures that decide on the outcome are fast; those of the shape may be left out.
 inline std::vector<Measure> measure(const Mesh& mesh,
                                     const Mesh* other_reference,
                                     const Mesh& source,
+                                    const Landmarks& landmarks,
                                     const Options& options,
                                     bool has_shape)
 {
@@ -182,6 +193,9 @@ inline std::vector<Measure> measure(const Mesh& mesh,
   {
     const RCO::Map_statistics map = RCO::map_statistics(source, mesh, reference);
     add_map(m, map);
+    if(options.has_soft_landmarks)
+      add_landmarks(m, landmark_distances(mesh, reference, landmarks),
+                    map.drift.reference_mean_edge_length, options.soft_landmarks);
     add_orientation(m, map.defects);
     if(has_shape)
       add_shape(m, mesh, &reference, map.drift);

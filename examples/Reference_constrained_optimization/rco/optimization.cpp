@@ -2,6 +2,7 @@
 
 #include "Progress.h"
 #include "sharp_edges.h"
+#include "soft_landmarks.h"
 
 #include <CGAL/Reference_constrained_optimization/Compatible_remeshing_energy.h>
 #include <CGAL/reference_constrained_optimize.h>
@@ -60,8 +61,12 @@ RCO::Result optimize(Mesh& mesh,
 
 bool can_use_threads() { return std::is_same<Concurrency_tag, CGAL::Parallel_tag>::value; }
 
-RCO::Result optimize(
-  Mesh& mesh, const Mesh& reference, const Mesh& source, double drift_bound, const Options& options)
+RCO::Result optimize(Mesh& mesh,
+                     const Mesh& reference,
+                     const Mesh& source,
+                     const Landmarks& landmarks,
+                     double drift_bound,
+                     const Options& options)
 {
 #ifdef CGAL_LINKED_WITH_TBB
   std::unique_ptr<tbb::global_control> limit;
@@ -81,8 +86,10 @@ RCO::Result optimize(
                     drift_bound, options);
   case Application::map:
     return optimize(mesh, reference,
-                    RCO::Compatible_remeshing_energy(
-                      source, CGAL::parameters::use_equal_areas(options.use_equal_areas)),
+                    RCO::sum(1,
+                             RCO::Compatible_remeshing_energy(
+                               source, CGAL::parameters::use_equal_areas(options.use_equal_areas)),
+                             options.soft_landmarks, Landmark_attraction(landmarks, reference)),
                     drift_bound, options);
   }
   return RCO::Result();

@@ -78,11 +78,13 @@ neither, from SOURCE itself, which must then lie close to REFERENCE everywhere.
 
 F is a text of lines with two whole numbers, a vertex of SOURCE and its counterpart on REFERENCE,
 counted from 0 in the order of the files; what follows a # is a comment. Three pairs are needed, and
-one at each end of the shape is wise.
+one at each end of the shape is wise. They are let go then, unless --soft-landmarks pulls them to their
+counterparts; with that option, F may be given beside M, too, with any number of pairs.
 
 Examples:
   rco map cat.off horse.off --landmarks cat_horse.txt -o cat_on_horse.off
   rco map cat.off horse.off --initial cat_on_horse.off -o better.off
+  rco map cat.off horse.off --landmarks cat_horse.txt --soft-landmarks 10 -o cat_on_horse.off
 )";
 
 // a switch with a value: "true" and "false", "on" and "off", "yes" and "no", "1" and "0"
@@ -195,6 +197,11 @@ class Option_reader
     case Application::map:
       add("landmarks", text(o.landmarks, "F"), "pairs of vertices to start from");
       add("initial", text(o.initial, "M"), "a mesh to start from");
+      add("soft-landmarks", po::value<double>(&o.soft_landmarks)->value_name("W"),
+          "landmarks are pulled towards their counterparts: minimized is the mean distortion (2: "
+          "isometric), plus W times the sum of the squared distances of landmarks from their "
+          "counterparts over the area of REFERENCE; weak at 1, strong at 100; the table tells "
+          "these distances; default: landmarks are let go");
       add("use-equal-areas", yes_or_no(o.use_equal_areas),
           "whether SOURCE is scaled to the area of REFERENCE first; default: true");
       break;
@@ -262,8 +269,10 @@ class Option_reader
     o.input = m_files[0];
     if(wanted == 2)
       o.reference = m_files[1];
-    if(!o.landmarks.empty() && !o.initial.empty())
-      refuse("--landmarks and --initial exclude each other");
+    if(o.has_soft_landmarks && o.landmarks.empty())
+      refuse("--soft-landmarks needs --landmarks");
+    if(!o.landmarks.empty() && !o.initial.empty() && !o.has_soft_landmarks)
+      refuse("--landmarks and --initial exclude each other without --soft-landmarks");
   }
 
   void take_numbers(bool has_drift_bound, bool has_leg_length)
@@ -284,6 +293,8 @@ class Option_reader
           "positive");
     check(o.leg_length_factor > 0 && std::isfinite(o.leg_length_factor), "--leg-length-factor",
           "positive");
+    check(o.soft_landmarks >= 0 && std::isfinite(o.soft_landmarks), "--soft-landmarks",
+          "zero or more");
     check(m_energy == "regularity" || m_energy == "angle", "--energy", "regularity or angle");
     o.uses_angle_energy = m_energy == "angle";
     if(o.uses_angle_energy && has_leg_length)
@@ -331,6 +342,7 @@ public:
     {
       refuse(e.what());
     }
+    m_options.has_soft_landmarks = given.count("soft-landmarks") > 0;
     take_files();
     take_numbers(given.count("drift-bound") > 0, given.count("leg-length-factor") > 0);
     return true;

@@ -42,6 +42,8 @@ struct Options
   bool uses_angle_energy = false; // quad
   double leg_length_factor = 5;   // quad
   bool use_equal_areas = true;    // map
+  bool has_soft_landmarks = false;
+  double soft_landmarks = 0; // weight of their distances
 
   int threads = 0; // 0: as many as the machine runs at once
   bool prints_json = false, is_quiet = false, shows_progress = false;

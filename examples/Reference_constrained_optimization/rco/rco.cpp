@@ -54,16 +54,16 @@ double length_of(const Drift_bound& bound, const Mesh& reference)
 Mesh read_initial_mesh(const Options& options,
                        const Mesh& source,
                        const Mesh& reference,
+                       const Landmarks& landmarks,
                        RCO::Initial_mesh_report& report)
 {
   if(!options.initial.empty())
     return read_mesh(options.initial);
-  if(options.landmarks.empty())
+  if(landmarks.empty())
     return source;
   Mesh initial;
-  report = RCO::compatible_initial_mesh(
-    source, reference, read_landmarks(options.landmarks, source, reference), initial,
-    CGAL::parameters::random_seed(options.random_seed));
+  report = RCO::compatible_initial_mesh(source, reference, landmarks, initial,
+                                        CGAL::parameters::random_seed(options.random_seed));
   return initial;
 }
 
@@ -86,9 +86,11 @@ Outcome run(const Options& options)
   const bool is_own_reference = options.reference.empty();
   const Mesh reference = is_own_reference ? input : read_mesh(options.reference);
   const bool is_map = options.application == Application::map;
+  const Landmarks landmarks =
+    options.landmarks.empty() ? Landmarks() : read_landmarks(options.landmarks, input, reference);
   Report report;
   const Mesh initial =
-    is_map ? read_initial_mesh(options, input, reference, report.initial) : input;
+    is_map ? read_initial_mesh(options, input, reference, landmarks, report.initial) : input;
   if(!options.output.empty())
     check_output(options.output, initial);
 
@@ -97,8 +99,8 @@ Outcome run(const Options& options)
   report.number_of_faces = mesh.number_of_faces();
   {
     const Interruptible interruptible;
-    report.result =
-      optimize(mesh, reference, input, length_of(options.drift_bound, reference), options);
+    report.result = optimize(mesh, reference, input, landmarks,
+                             length_of(options.drift_bound, reference), options);
     if(!options.output.empty())
       write_mesh(options.output, mesh);
   }
@@ -107,8 +109,8 @@ Outcome run(const Options& options)
   const bool prints = options.prints_json || !options.is_quiet;
   const bool is_measured = run_unless_interrupted([&]() {
     report.before =
-      measure(initial, is_own_reference ? nullptr : &reference, input, options, prints);
-    report.after = measure(mesh, &reference, input, options, prints);
+      measure(initial, is_own_reference ? nullptr : &reference, input, landmarks, options, prints);
+    report.after = measure(mesh, &reference, input, landmarks, options, prints);
   });
   if(!is_measured)
     end_unmeasured(options);

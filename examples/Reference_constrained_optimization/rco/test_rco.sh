@@ -174,6 +174,30 @@ expect 14 map near.off reference.off --relax-constraints --json
 json_is outcome 'not better'
 json_is exit_code 14
 json_is 'worse;0' mean_distortion
+# ---- soft landmarks: the larger their weight, the closer they come; 0 changes no bit
+printf '220 173\n90 76\n' >pulled.txt
+expect 0 map flat.off reference.off --initial triangles.off -o let_go.off
+grep -q 'of landmarks' out && fail "distances of landmarks that nobody asked for"
+last=
+for weight in 0 1 10 100; do
+  expect 0 map flat.off reference.off --initial triangles.off --landmarks pulled.txt \
+    --soft-landmarks $weight -o "soft_$weight.off"
+  distance=$(awk '/^distance of landmarks/ { print $NF }' out)
+  awk -v a="$distance" -v b="${last:-1e9}" 'BEGIN { exit !(a != "" && a + 0 < b + 0) }' ||
+    fail "landmarks of weight $weight are '$distance' away from their counterparts, those before '$last'"
+  last=$distance
+done
+cmp -s let_go.off soft_0.off || fail "landmarks without weight change the result"
+cmp -s let_go.off soft_1.off && fail "landmarks with a weight do not change the result"
+# they are an objective of their own
+expect 0 map flat.off reference.off --initial let_go.off --landmarks pulled.txt --soft-landmarks 100 --json
+json_less 'after;mean_landmark_distance' 'before;mean_landmark_distance'
+json_less 'after;maximum_landmark_distance' 'before;maximum_landmark_distance'
+json_less 'before;mean_distortion' 'after;mean_distortion'
+json_is outcome improved
+json_is 'worse;0' mean_distortion
+expect 0 map flat.off reference.off --landmarks landmarks.txt --soft-landmarks 10 --json
+json_is 'before;mean_landmark_distance' 0
 # a map to half of the reference is none
 awk 'NF == 3 && NR > 2 { $1 /= 2; $3 = 0.3 * sin(3 * $1) * cos(2 * $2) } { print }' \
   triangles.off >half.off
@@ -189,6 +213,8 @@ for line in '0' '0 0 0' 'a 0' '441 0' '0 324' '-1 0'; do
   expect 3 map flat.off reference.off --landmarks bad.txt
   grep -q 'line 2' err || fail "the line is not named: $(cat err)"
 done
+printf '# none\n' >empty.txt
+expect 3 map flat.off reference.off --landmarks empty.txt
 printf '0 0\n20 17\n' >two.txt
 expect 5 map flat.off reference.off --landmarks two.txt
 
@@ -222,6 +248,12 @@ expect 2 quad quads.off --energy angle --leg-length-factor 2
 expect 2 quad quads.off --exponent-factor 2
 expect 2 map flat.off
 expect 2 map flat.off reference.off --landmarks landmarks.txt --initial triangles.off
+expect 2 map flat.off reference.off --initial triangles.off --soft-landmarks 1
+grep -q 'needs --landmarks' err || fail "no word about --landmarks"
+for weight in -1 nan inf strong; do
+  expect 2 map flat.off reference.off --landmarks landmarks.txt "--soft-landmarks=$weight"
+  grep -q 'soft-landmarks' err || fail "no word about --soft-landmarks"
+done
 for words in drift-bound=1m drift-bound=-1 drift-bound=e drift-bound=nan random-seed=-1 random-seed=1.5 \
              number-of-iterations=1e30 threads=-1 maximum-running-time=0 energy-tolerance=-1 \
              sharp-edges=200 sharp-edges=x exponent-factor=0 exponent-factor=inf \
