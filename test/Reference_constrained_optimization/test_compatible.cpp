@@ -414,7 +414,8 @@ Mapped mapped(const Pair& pair, const std::string& name, unsigned int seed = 0)
     number_of_edges += !indices.is_border_vertex[l.first];
   std::vector<Mesh::Halfedge_index> borders;
   CGAL::Polygon_mesh_processing::extract_boundary_cycles(output, std::back_inserter(borders));
-  RCO_CHECK_EQUAL(r.landmark_tree.size(), number_of_edges + borders.size() - 1);
+  RCO_CHECK_EQUAL(r.landmark_tree.size(),
+                  number_of_edges + r.added_landmarks.size() + borders.size() - 1);
   RCO_CHECK(r.capped_energy >= 4 - 1e-9);
   if(pair.source.faces.front().size() == 3)
   {
@@ -509,6 +510,15 @@ void test_extremities()
   RCO_CHECK_EQUAL(two.unpaired_in_source.size(), 1u);
   for(const int v : two.unpaired_in_source)
     RCO_CHECK_LESS((from.points[v] - limbs[2]).norm(), 0.2);
+  // it takes some room on the reference all the same
+  double area_of_limb = 0;
+  for(const std::vector<int>& f : shape.faces)
+    if((from.points[f[0]] - limbs[2]).norm() < 0.3)
+      area_of_limb += vector_area(shape, f).norm();
+  RCO_CHECK_LESS(0.001 * area(shape), area_of_limb);
+  const Pair long_limb{closed_cylinder(10, 120, 0.1, 12), icosphere(3), {{0, 0}, {3, 3}, {6, 6}}};
+  RCO_CHECK_EQUAL(mapped(long_limb, "a long limb onto a ball").report.unpaired_in_source.size(),
+                  1u);
 }
 
 void test_disk_maps()
@@ -878,9 +888,9 @@ void test_map_errors()
     pair.landmarks[i].second = around[i];
   refuses(pair, "not in the same order");
 
-  // a long limb without a landmark or a counterpart: too small in the plane to be told from a point
-  const Shape limb = closed_cylinder(10, 120, 0.1, 12);
-  pair = Pair{limb, icosphere(3), {{0, 0}, {3, 3}, {6, 6}}};
+  // a long limb without a landmark, and without a vertex that could be a counterpart: too small in the plane to be
+  // told from a point
+  pair = Pair{closed_cylinder(10, 120, 0.1, 12), tetrahedron(), {{0, 0}, {3, 1}, {6, 2}, {41, 3}}};
   refuses(pair, "long parts, may help, as at the vertices");
 }
 

@@ -81,6 +81,10 @@ void test_maps()
   RCO_CHECK(!folded.is_usable());
   RCO_CHECK_NEAR(folded.area_hit_more_than_once, 0.25, 1e-9);
   RCO_CHECK_EQUAL(folded.number_of_samples_not_hit, 0u);
+  const RCO::Map_statistics reversed =
+    RCO::map_statistics(source, source, mesh_of(turned_round(plane_grid(16, 16))));
+  RCO_CHECK_EQUAL(reversed.number_of_samples_hit_once, reversed.number_of_samples);
+  RCO_CHECK_EQUAL(reversed.area_hit_more_than_once, 0.);
 
   const RCO::Map_statistics half = statistics_of([](double x) { return 0.5 * x; });
   RCO_CHECK(!half.is_usable());

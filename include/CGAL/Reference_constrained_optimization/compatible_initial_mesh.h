@@ -43,8 +43,8 @@ struct Initial_mesh_report
   /// the tree of the best map: pairs of positions in the range of landmarks, which is continued by
   /// `added_landmarks` and, where a border has less than three, by points of it.
   std::vector<std::pair<int, int>> landmark_tree;
-  /// extremities without a landmark that were paired: positions in `vertices(source)` and in
-  /// `vertices(reference)`.
+  /// extremities without a landmark that were paired, with one another or with the vertex that is most similar:
+  /// positions in `vertices(source)` and in `vertices(reference)`.
   std::vector<std::pair<int, int>> added_landmarks;
   /// extremities without a landmark and without a counterpart, which need a landmark: positions in
   /// `vertices(source)` and in `vertices(reference)`.
@@ -114,8 +114,11 @@ inline std::vector<Vector_3> map_with_extremities(const Mesh_copy& source,
   std::size_t number_of_trees_tried = 0;
   std::vector<Vector_3> best;
   report.capped_energy = std::numeric_limits<double>::infinity();
-  for(int round = 0; round < largest_number_of_rounds; ++round)
+  std::vector<int> unpaired_in_source, unpaired_in_reference; // but with another vertex
+  bool is_new = true;
+  for(int round = 0; round < largest_number_of_rounds && is_new; ++round)
   {
+    is_new = false;
     Landmark_map map(source, reference);
     map.set_landmarks(source_landmarks, reference_landmarks);
     std::vector<Landmark_map::Tried_tree> tried;
@@ -140,16 +143,38 @@ inline std::vector<Vector_3> map_with_extremities(const Mesh_copy& source,
     }
     if(is_best || best.empty())
     {
-      report.unpaired_in_source = found.source;
-      report.unpaired_in_reference = found.reference;
+      report.unpaired_in_source = unpaired_in_source;
+      report.unpaired_in_reference = unpaired_in_reference;
+      for(const std::pair<int, int>& p : found.without_counterpart_in_reference)
+        report.unpaired_in_source.push_back(p.first);
+      for(const std::pair<int, int>& p : found.without_counterpart_in_source)
+        report.unpaired_in_reference.push_back(p.second);
     }
-    if(found.pairs.empty())
-      break;
-    for(const std::pair<int, int>& p : found.pairs)
+    std::vector<std::pair<int, int>> added = found.pairs;
+    if(added.empty()) // even another vertex as counterpart keeps an extremity from shrinking
     {
-      source_landmarks.push_back(p.first);
-      reference_landmarks.push_back(p.second);
+      for(const std::pair<int, int>& p : found.without_counterpart_in_reference)
+      {
+        unpaired_in_source.push_back(p.first);
+        added.push_back(p);
+      }
+      for(const std::pair<int, int>& p : found.without_counterpart_in_source)
+      {
+        unpaired_in_reference.push_back(p.second);
+        added.push_back(p);
+      }
     }
+    for(const std::pair<int, int>& p : added)
+      if(p.first >= 0 && p.second >= 0 &&
+         std::find(source_landmarks.begin(), source_landmarks.end(), p.first) ==
+           source_landmarks.end() &&
+         std::find(reference_landmarks.begin(), reference_landmarks.end(), p.second) ==
+           reference_landmarks.end())
+      {
+        source_landmarks.push_back(p.first);
+        reference_landmarks.push_back(p.second);
+        is_new = true;
+      }
   }
   if(best.empty())
   {

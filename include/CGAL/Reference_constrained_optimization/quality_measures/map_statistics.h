@@ -81,7 +81,10 @@ public:
     const double largest_gap = 3 * m_reference.mean_edge_length();
     const int n = m_reference.mesh().number_of_faces();
     std::vector<char> is_uncovered(n, 1);
-    double area = 0, hit_more = 0, not_hit = 0;
+    // where faces of the same orientation are upright, and where opposite ones are
+    std::size_t hit_once[2] = {0, 0};
+    double hit_more[2] = {0, 0};
+    double area = 0, not_hit = 0;
     Surface_point last;
     for(int f = 0; f < n; ++f)
     {
@@ -94,18 +97,22 @@ public:
         is_uncovered[f] = is_uncovered[f] && (last.position - x).norm() > largest_gap;
         ++result.number_of_samples;
         const Hits hits = hits_of(x, f);
-        if(hits.upright == 1 && hits.inverted == 0)
-          ++result.number_of_samples_hit_once;
-        else if(hits.upright + hits.inverted > 0)
-          hit_more += sample_area;
-        else
+        if(hits.same + hits.opposite == 0)
         {
           ++result.number_of_samples_not_hit;
           not_hit += sample_area;
+          continue;
         }
+        for(const int i : {0, 1})
+          if((i == 0 ? hits.same : hits.opposite) == 1 && hits.same + hits.opposite == 1)
+            ++hit_once[i];
+          else
+            hit_more[i] += sample_area;
       }
     }
-    result.area_hit_more_than_once = hit_more / area;
+    const int orientation = hit_once[0] < hit_once[1] ? 1 : 0;
+    result.number_of_samples_hit_once = hit_once[orientation];
+    result.area_hit_more_than_once = hit_more[orientation] / area;
     result.area_not_hit = not_hit / area;
     result.largest_uncovered_region = largest_region(is_uncovered) / area;
   }
@@ -113,7 +120,7 @@ public:
 private:
   struct Hits
   {
-    int upright = 0, inverted = 0;
+    int same = 0, opposite = 0; // orientation
   };
 
   // the points of the mesh whose closest point is x, in face f of R
@@ -133,7 +140,7 @@ private:
       const Surface_point closest = m_reference.closest_near(y, f, m_rounding);
       if((closest.position - y).norm() < std::abs(height) - m_rounding)
         continue;
-      ++(cosine > 0 ? hits.upright : hits.inverted);
+      ++(cosine > 0 ? hits.same : hits.opposite);
     }
     return hits;
   }
@@ -185,7 +192,7 @@ inline double collapsed_area(const Mesh_copy& source, const Mesh_copy& mesh)
  * Every point of the mesh is mapped to its closest point of the reference. A sample of the reference is *hit*
  * by each point of the mesh whose closest point it is; such points lie on the line along the normal of its
  * triangle. Where vertices are on the reference and the mesh bridges a convex edge, samples beside that edge may
- * not be hit.
+ * not be hit. The two may be oriented oppositely.
  *
  * \param source the mesh with the shapes at rest. Faces and vertices of it and of `mesh` correspond by their
  *        positions in `faces()` and `vertices()`.

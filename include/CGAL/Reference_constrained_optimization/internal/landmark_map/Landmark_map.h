@@ -96,11 +96,12 @@ public:
     return best;
   }
 
-  // Extremities without a landmark: pairs of their vertices, and those that have no counterpart.
+  // Extremities without a landmark: pairs of their vertices, and those that have no counterpart, each with the
+  // vertex of the other surface whose distances from the landmarks are most similar.
   struct Extremities
   {
-    std::vector<std::pair<int, int>> pairs;
-    std::vector<int> source, reference;
+    std::vector<std::pair<int, int>> pairs, without_counterpart_in_reference,
+      without_counterpart_in_source;
   };
   Extremities extremities() const
   {
@@ -125,10 +126,14 @@ public:
     const double largest_relative_area = 0.5; // blunt ones may do without a landmark
     for(std::size_t i = 0; i < a.size(); ++i)
       if(!is_paired_a[i] && a[i].relative_area < largest_relative_area)
-        result.source.push_back(a[i].vertex);
+        result.without_counterpart_in_reference.emplace_back(
+          a[i].vertex,
+          most_similar_vertex(m_reference, m_number_of_reference_points, a[i].distances));
     for(std::size_t i = 0; i < b.size(); ++i)
       if(!is_paired_b[i] && b[i].relative_area < largest_relative_area)
-        result.reference.push_back(b[i].vertex);
+        result.without_counterpart_in_source.emplace_back(
+          most_similar_vertex(m_source, int(m_source_copy.points.size()), b[i].distances),
+          b[i].vertex);
     return result;
   }
 

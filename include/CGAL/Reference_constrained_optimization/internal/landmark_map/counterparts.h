@@ -5,11 +5,14 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_COUNTERPARTS_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_LANDMARK_MAP_COUNTERPARTS_H
 
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
+
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/maximum_weighted_matching.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,6 +30,31 @@ inline double difference_of_distances(const std::vector<double>& a, const std::v
     sum += 0.5 * (a[i] + b[i]);
   }
   return std::sqrt(squares / double(a.size())) / (sum / double(a.size()));
+}
+
+// that of the first n vertices with the least difference; no landmark and no vertex of a border
+inline int
+most_similar_vertex(const Cut_surface& surface, int n, const std::vector<double>& distances)
+{
+  const std::vector<std::vector<double>>& from_landmarks = surface.landmark_distances();
+  double least = std::numeric_limits<double>::infinity();
+  int best = -1;
+  std::vector<double> here(distances.size());
+  for(int v = 0; v < n; ++v)
+  {
+    const Cut_surface::Vertex vertex{Cut_surface::Mesh::size_type(v)};
+    if(surface.is_taken(vertex) || surface.mesh().is_isolated(vertex))
+      continue;
+    for(std::size_t i = 0; i < here.size(); ++i)
+      here[i] = from_landmarks[i][v];
+    const double difference = difference_of_distances(distances, here);
+    if(difference < least)
+    {
+      least = difference;
+      best = v;
+    }
+  }
+  return best;
 }
 
 // Pairs of indices of places on two surfaces, given by their distances from corresponding landmarks, that are
