@@ -702,6 +702,16 @@ void test_topologies()
       return normal.z() > 0.5 && centre.x() < 0.5 && std::abs(centre.y() - 1) < 0.1;
     },
     8);
+
+  // landmarks on one of two borders tell where the other one is
+  Pair rings{annulus(60, 8), annulus(47, 6), {}};
+  for(const double angle : {0.1, 1.5, 3.3, 5.})
+  {
+    const Vector_3 p(std::cos(angle), std::sin(angle), 0);
+    rings.landmarks.push_back({nearest(rings.source, p), nearest(rings.reference, p)});
+  }
+  RCO_CHECK_LESS(
+    optimized(rings.source, mapped(rings, "a ring").shape, rings.reference).distortion.mean, 2.03);
 }
 
 // Random landmarks, few vertices: `random_point(k)` is where the k-th shall be.

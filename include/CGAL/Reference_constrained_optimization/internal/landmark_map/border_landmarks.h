@@ -8,8 +8,12 @@
 #include <CGAL/Reference_constrained_optimization/Invalid_input.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/counterparts.h>
+#include <CGAL/Reference_constrained_optimization/internal/landmark_map/split_edge.h>
+
+#include <CGAL/boost/graph/iterator.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
@@ -46,12 +50,9 @@ inline std::vector<int> corresponding_borders(const Cut_surface& source,
   }
   const auto distances = [](const Cut_surface& surface, const std::vector<int>& borders) {
     std::vector<std::vector<double>> from_landmarks(borders.size());
-    for(int i = 0; i < int(surface.landmarks().size()); ++i)
-    {
-      const std::vector<double> d = surface.distances_from(surface.landmarks()[i]);
+    for(const std::vector<double>& d : surface.landmark_distances())
       for(std::size_t k = 0; k < borders.size(); ++k)
         from_landmarks[k].push_back(surface.closest_on_border(borders[k], d).first);
-    }
     return from_landmarks;
   };
   std::vector<int> free_source, free_reference;
@@ -69,13 +70,90 @@ inline std::vector<int> corresponding_borders(const Cut_surface& source,
   return result;
 }
 
-// Gives borders landmarks up to three, so that they are sides of a polygon: a border without any is connected to
-// the landmark that is closest to it on both surfaces; parts between landmarks are divided into equal lengths.
+// A border as the sequence of its vertices, with the lengths up to them.
+class Border_line
+{
+public:
+  // from a vertex of the border on
+  Border_line(const Cut_surface& surface, Cut_surface::Vertex first) : m_surface(surface)
+  {
+    const Cut_surface::Mesh& mesh = surface.mesh();
+    double length = 0;
+    for(const Cut_surface::Halfedge h :
+        CGAL::halfedges_around_face(border_halfedge_from(mesh, first), mesh))
+    {
+      m_vertices.push_back(mesh.source(h));
+      m_lengths.push_back(length);
+      length += surface.length(h);
+    }
+    m_vertices.push_back(first);
+    m_lengths.push_back(length);
+  }
+
+  const std::vector<Cut_surface::Vertex>& vertices() const { return m_vertices; }
+
+  // the distances from all landmarks at equally spaced points, from the i-th vertex on
+  std::vector<std::vector<double>> distances(std::size_t i, int number_of_points) const
+  {
+    std::vector<std::vector<double>> result;
+    for(int k = 0; k < number_of_points; ++k)
+    {
+      double s = m_lengths[i] + k * m_lengths.back() / number_of_points;
+      s -= s < m_lengths.back() ? 0 : m_lengths.back();
+      const auto next = std::upper_bound(m_lengths.begin() + 1, m_lengths.end() - 1, s);
+      const std::size_t j = std::size_t(next - m_lengths.begin());
+      const double t = (s - m_lengths[j - 1]) / (m_lengths[j] - m_lengths[j - 1]);
+      std::vector<double> point;
+      for(const std::vector<double>& d : m_surface.landmark_distances())
+        point.push_back((1 - t) * d[m_vertices[j - 1]] + t * d[m_vertices[j]]);
+      result.push_back(std::move(point));
+    }
+    return result;
+  }
+
+private:
+  const Cut_surface& m_surface;
+  std::vector<Cut_surface::Vertex> m_vertices; // the first one twice
+  std::vector<double> m_lengths;
+};
+
+// The vertex of a border of the reference that corresponds to one of the source's: that for which the distances
+// from all landmarks are most similar, all around the border.
+inline Cut_surface::Vertex corresponding_border_vertex(const Cut_surface& source,
+                                                       Cut_surface::Vertex vertex,
+                                                       const Cut_surface& reference,
+                                                       Cut_surface::Vertex any_of_reference)
+{
+  const int number_of_points = 16;
+  const std::vector<std::vector<double>> expected =
+    Border_line(source, vertex).distances(0, number_of_points);
+  const Border_line other(reference, any_of_reference);
+  double least = std::numeric_limits<double>::infinity();
+  Cut_surface::Vertex best = any_of_reference;
+  for(std::size_t i = 0; i + 1 < other.vertices().size(); ++i)
+  {
+    const std::vector<std::vector<double>> found = other.distances(i, number_of_points);
+    double sum = 0;
+    for(int k = 0; k < number_of_points; ++k)
+      sum += difference_of_distances(expected[k], found[k]);
+    if(sum < least)
+    {
+      least = sum;
+      best = other.vertices()[i];
+    }
+  }
+  return best;
+}
+
+// Gives borders landmarks up to three, so that they are sides of a polygon: a border without any gets one where it is
+// closest to another, and where that is on the reference; parts between landmarks are divided into equal lengths.
 // Returns the landmarks of each border, in the order of the source's. Throws Invalid_input if their order on the
 // reference is another.
 inline std::vector<std::vector<int>> set_border_landmarks(Cut_surface& source,
                                                           Cut_surface& reference)
 {
+  source.measure_landmark_distances();
+  reference.measure_landmark_distances();
   const std::vector<int> corresponding = corresponding_borders(source, reference);
   const int n = int(source.landmarks().size());
   std::vector<std::vector<int>> result;
@@ -84,22 +162,16 @@ inline std::vector<std::vector<int>> set_border_landmarks(Cut_surface& source,
     const int other_border = corresponding[border];
     if(source.border_landmarks(border).empty())
     {
-      double least = std::numeric_limits<double>::infinity();
-      std::pair<Cut_surface::Vertex, Cut_surface::Vertex> best;
+      std::pair<double, Cut_surface::Vertex> closest(std::numeric_limits<double>::infinity(), {});
       for(int i = 0; i < n; ++i)
-      {
-        const auto a =
-          source.closest_on_border(border, source.distances_from(source.landmarks()[i]));
-        const auto b = reference.closest_on_border(
-          other_border, reference.distances_from(reference.landmarks()[i]));
-        if(a.first + b.first < least)
-        {
-          least = a.first + b.first;
-          best = {a.second, b.second};
-        }
-      }
-      source.add_landmark(best.first);
-      reference.add_landmark(best.second);
+        closest =
+          (std::min)(closest, source.closest_on_border(border, source.landmark_distances()[i]));
+      const Cut_surface::Vertex any =
+        reference.closest_on_border(other_border, reference.landmark_distances()[0]).second;
+      const Cut_surface::Vertex other =
+        corresponding_border_vertex(source, closest.second, reference, any);
+      source.add_landmark(closest.second);
+      reference.add_landmark(other);
     }
     std::vector<int> order = source.border_landmarks(border);
     if(order.size() < 3)

@@ -7,11 +7,9 @@
 
 #include <CGAL/Reference_constrained_optimization/internal/landmark_map/Cut_surface.h>
 
+#include <CGAL/Union_find.h>
 #include <CGAL/boost/graph/iterator.h>
 
-#include <boost/pending/disjoint_sets.hpp>
-
-#include <cstddef>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -51,23 +49,22 @@ inline std::vector<Crossed_edges> closed_curves(const Cut_surface& surface)
         queue.push(f);
       }
   // a spanning tree of the vertices, those of the boundary being one; the edges in neither tree close curves
-  std::vector<std::size_t> rank(mesh.number_of_vertices(), 0), parent(mesh.number_of_vertices());
-  boost::disjoint_sets<std::size_t*, std::size_t*> sets(rank.data(), parent.data());
-  for(std::size_t v = 0; v < parent.size(); ++v)
-    sets.make_set(v);
+  CGAL::Union_find<Mesh::Vertex_index> sets;
+  std::vector<CGAL::Union_find<Mesh::Vertex_index>::handle> set_of;
+  for(const Mesh::Vertex_index v : mesh.vertices())
+    set_of.push_back(sets.make_set(v));
   for(const Mesh::Vertex_index v : mesh.vertices())
     if(surface.is_taken(v))
-      sets.union_set(std::size_t(v), std::size_t(surface.landmarks().front()));
+      sets.unify_sets(set_of[v], set_of[surface.landmarks().front()]);
   std::vector<Crossed_edges> curves;
   for(const Mesh::Edge_index e : mesh.edges())
   {
     if(!is_crossable(e) || is_in_tree[e])
       continue;
-    const std::size_t a = sets.find_set(std::size_t(mesh.vertex(e, 0))),
-                      b = sets.find_set(std::size_t(mesh.vertex(e, 1)));
-    if(a != b)
+    const auto a = set_of[mesh.vertex(e, 0)], b = set_of[mesh.vertex(e, 1)];
+    if(!sets.same_set(a, b))
     {
-      sets.link(a, b);
+      sets.unify_sets(a, b);
       continue;
     }
     Crossed_edges crossed(mesh.number_of_edges(), 0);
