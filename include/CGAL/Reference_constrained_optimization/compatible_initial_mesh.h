@@ -213,14 +213,14 @@ void remove_elements(Mesh& mesh, long)
  *
  * Both surfaces are cut along a tree of shortest paths between landmarks and borders, and along two further paths
  * for each handle, in the same order around each landmark, and flattened to the same convex polygon by mean value
- * coordinates (Floater, \e Mean \e value
- * \e coordinates, 2003). Each vertex of the source is then located in the reference's triangles in the
- * plane. That both maps are bijective is checked by exact predicates. Since the distortion depends much on
- * the tree, several are tried, those with the shortest detours on both surfaces, and the map of least
- * distortion is kept.
+ * coordinates (Floater, \e Mean \e value \e coordinates, 2003). Each vertex of the source is then located in the
+ * reference's triangles in the plane. That both maps are bijective is checked by exact predicates. Since the
+ * distortion depends much on the tree, several are tried, those with the shortest detours on both surfaces, and the
+ * map of least distortion is kept.
  *
  * The two surfaces must be connected, and have the same genus and number of borders. Borders are mapped onto each
- * other: those with the same landmarks, and others by their distances from the landmarks. A closed reference of opposite orientation is reversed first.
+ * other: those with the same landmarks, and others by their distances from the landmarks. A closed reference of
+ * opposite orientation is reversed first.
  *
  * An extremity (a limb, an ear) without a landmark shrinks exponentially in the plane. Extremities of both
  * surfaces whose distances from the landmarks are alike get a pair of landmarks if the map is better for it;
@@ -270,8 +270,8 @@ void remove_elements(Mesh& mesh, long)
  * \throws Invalid_input if a mesh cannot be read (see `reference_constrained_optimize()`), has
  *         several components, if genus or number of borders differ, if a landmark is not a
  *         vertex with faces or is in two pairs, if there are fewer than three, if landmarks on the
- *         borders are not in the same order or not on corresponding borders, or if no bijective map was found. `output_mesh` is
- *         then untouched.
+ *         borders are not in the same order or not on corresponding borders, or if no bijective map was
+ *         found. `output_mesh` is then untouched.
  */
 template <typename SourceMesh,
           typename ReferenceMesh,

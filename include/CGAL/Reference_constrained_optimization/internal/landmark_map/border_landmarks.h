@@ -152,6 +152,8 @@ inline Cut_surface::Vertex corresponding_border_vertex(const Cut_surface& source
 inline std::vector<std::vector<int>> set_border_landmarks(Cut_surface& source,
                                                           Cut_surface& reference)
 {
+  if(source.number_of_borders() == 0)
+    return {};
   source.measure_landmark_distances();
   reference.measure_landmark_distances();
   const std::vector<int> corresponding = corresponding_borders(source, reference);
