@@ -22,7 +22,7 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   endif()
   if(RCO_SANITIZERS)
     target_compile_options(rco_settings INTERFACE
-      -fsanitize=${RCO_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+      -fsanitize=${RCO_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
     target_link_options(rco_settings INTERFACE -fsanitize=${RCO_SANITIZERS})
   endif()
 elseif(MSVC)
