@@ -11,7 +11,11 @@
 
 #include <CGAL/Reference_constrained_optimization/Exponential_MIPS_density.h>
 #include <CGAL/Reference_constrained_optimization/Quad_angle_energy.h>
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
+#include <CGAL/Reference_constrained_optimization/internal/reference/near_sheets.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Stencil_terms.h>
+
+#include <algorithm>
 
 using namespace rco_test;
 
@@ -103,6 +107,30 @@ void test_measures()
   RCO_CHECK_LESS(inverted.capped_energy, inverted.energy);
 }
 
+// Faces of a single sheet that lie on one another are counted, and are tested from then on.
+void test_watched_intersections()
+{
+  Located_shape scene(scrambled(icosphere(3), 0.7, 1, onto_sphere), icosphere(3));
+  internal::Optimization_state& state = scene.state;
+  const auto is_tested = [&](int f) {
+    return std::any_of(state.faces_near_sheets.begin(), state.faces_near_sheets.end(),
+                       [&](const auto& near) { return near.face == f; });
+  };
+  state.set_near_sheets(internal::near_sheets(scene.surface, 1));
+  state.counts.intersections = {0, 0};
+  std::vector<Vector_3> points;
+  for(const internal::Located_vertex& v : state.vertices)
+    points.push_back(v.position);
+  const auto pairs = internal::self_intersections(scene.copy.mesh, points);
+  RCO_CHECK_LESS(20, int(pairs.size()));
+  RCO_CHECK(!is_tested(pairs.front().first));
+  state.watch_intersections();
+  RCO_CHECK_EQUAL(state.counts.intersections.now, int(pairs.size()));
+  for(const std::pair<int, int>& pair : pairs)
+    RCO_CHECK(is_tested(pair.first) && is_tested(pair.second));
+  RCO_CHECK_LESS(state.faces_near_sheets.size(), std::size_t(scene.copy.mesh.number_of_faces()));
+}
+
 // Coordinates of vertices in their frames move them in space; vertices outside the patch stay.
 void test_stencil_terms()
 {
@@ -160,6 +188,7 @@ int main()
                RCO::Minimum_angle_energy());
   test_patches(plane_grid(12, 10, 1, true), plane_grid(12, 10), RCO::Quad_angle_energy());
   run_test("measures", test_measures);
+  run_test("watched intersections", test_watched_intersections);
   run_test("stencil terms", test_stencil_terms);
   return report();
 }

@@ -77,6 +77,8 @@ inline std::vector<std::pair<int, int>> counterparts(const std::vector<std::vect
       if(gain > 0)
         boost::add_edge(i, a.size() + j, Weight(2 * std::lround(gain / unit)), graph);
     }
+  if(boost::num_edges(graph) == 0) // its largest weight would overflow
+    return {};
   std::vector<boost::graph_traits<Graph>::vertex_descriptor> mate(a.size() + b.size());
   boost::maximum_weighted_matching(graph, mate.data());
   std::vector<std::pair<int, int>> result;

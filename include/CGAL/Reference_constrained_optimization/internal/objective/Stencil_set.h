@@ -137,7 +137,7 @@ private:
   }
 
   const Energy& m_energy;
-  const Frame& m_frame;
+  Frame m_frame;
   double m_step;
 };
 

@@ -6,10 +6,12 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STAGES_ITERATION_STAGE_H
 
 #include <CGAL/Reference_constrained_optimization/internal/stages/Patch_visits.h>
+#include <CGAL/Reference_constrained_optimization/internal/stages/saved_state.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace CGAL {
@@ -42,12 +44,11 @@ public:
     for(std::size_t i = 0; i < parameters.number_of_iterations; ++i)
     {
       m_visits.visitor.on_iteration_begin(i);
-      m_visits.round_solver.begin_iteration();
-      m_visits.update_sums();
       // where angles are bounded, later stages need the allowances more
       settings.limits.uses_allowances = !m_visits.has_angle_criterion && before.defects() > 0;
       ++m_visits.result.number_of_iterations;
-      const bool complete = visit_active_unless_interrupted();
+      const bool complete =
+        settings.limits.uses_allowances ? visit_folded() : visit_active_unless_interrupted();
       const Global_measure after = m_visits.measure();
       const double energy =
         m_visits.has_target_densities() ? after.energy : m_visits.target_energy();
@@ -93,8 +94,31 @@ public:
   }
 
 private:
+  // Faces that lie on one another where R has no other sheet are not tested for intersections. After the first
+  // iteration in which such pairs become more than on input, which is repeated, they are.
+  bool visit_folded()
+  {
+    const Bounded_number& number = m_state.counts.intersections;
+    if(m_watches_intersections)
+      m_state.watch_intersections();
+    if(m_watches_intersections || !number.is_bounded())
+      return visit_active_unless_interrupted();
+    std::vector<int> all(m_state.mesh.number_of_faces());
+    std::iota(all.begin(), all.end(), 0);
+    Saved_state start(m_state, m_visits.round_solver.shape_bound());
+    start.add(all);
+    const bool complete = visit_active_unless_interrupted();
+    if(int(m_state.intersecting_faces().size()) <= number.largest)
+      return complete;
+    start.restore();
+    m_watches_intersections = true;
+    return visit_folded();
+  }
+
   bool visit_active_unless_interrupted()
   {
+    m_visits.round_solver.begin_iteration();
+    m_visits.update_sums();
     try
     {
       return visit_active();
@@ -203,10 +227,11 @@ private:
   }
 
   Visits& m_visits;
-  const Optimization_state& m_state;
+  Optimization_state& m_state;
   std::vector<char> m_is_active; // per face
   std::size_t m_next_flattening_iteration = 0;
   int m_stalled_iterations = 0; // successive ones
+  bool m_watches_intersections = false;
   bool m_has_converged = false;
   double m_converged_energy = 0; // at the last convergence
 };

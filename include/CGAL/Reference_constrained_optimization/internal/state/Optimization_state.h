@@ -5,6 +5,7 @@
 #ifndef CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_OPTIMIZATION_STATE_H
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_STATE_OPTIMIZATION_STATE_H
 
+#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/mesh/surface_metric.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Element_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/objective/Stencil_set.h>
@@ -144,6 +145,29 @@ struct Optimization_state
     std::vector<int> all(near_sheet_index.size());
     std::iota(all.begin(), all.end(), 0);
     update_near_sheets(all);
+  }
+  // Tests faces where faces intersect now, too, and counts all pairs again.
+  void watch_intersections()
+  {
+    const std::vector<std::pair<int, int>> pairs = intersecting_faces();
+    counts.intersections.now = int(pairs.size());
+    if(pairs.empty())
+      return;
+    std::vector<char> is_near = std::move(is_near_sheet);
+    is_near.resize(reference.mesh().number_of_faces(), 0);
+    for(const std::pair<int, int>& pair : pairs)
+      for(const int f : {pair.first, pair.second})
+        for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+          is_near[vertices[mesh.corner_vertex[c]].on_reference.face] = 1;
+    set_near_sheets(std::move(is_near));
+  }
+  // all pairs, wherever they are
+  std::vector<std::pair<int, int>> intersecting_faces() const
+  {
+    std::vector<Vector_3> points;
+    for(const Located_vertex& v : vertices)
+      points.push_back(v.position);
+    return self_intersections(mesh, points);
   }
   // after vertices of these faces have moved
   void update_near_sheets(const std::vector<int>& moved)
