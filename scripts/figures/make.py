@@ -116,6 +116,7 @@ PAIRS = {
     "bear_bear_bis": ("bear", "bear_bis", (0, 10, "y"), (-30, 10, "y")),
     "bull_cow": ("bull", "cow", (210, 20, "y"), (30, 20, "y")),
     "cow_bull": ("cow", "bull", (30, 20, "y"), (210, 20, "y")),
+    "eight_twisted": ("eight_fine", "eight_twisted", (20, 50, "y"), (20, 50, "y")),
 }
 
 # three scans, three parts
@@ -151,6 +152,49 @@ def optimize_quads():
             runs("quad_angle", "quad_benchmark", pairs, "--check", "--energy", "angle"))
 
 
+def refined(mesh):
+    """every triangle in four"""
+    points, at, faces = list(mesh.points), {}, []
+
+    def middle(a, b):
+        key = (min(a, b), max(a, b))
+        if key not in at:
+            at[key] = len(points)
+            points.append(tuple(0.5 * (x + y) for x, y in zip(points[a], points[b])))
+        return at[key]
+
+    for a, b, c in mesh.faces:
+        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+        faces += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return Mesh(points, faces)
+
+
+def twisted(mesh):
+    """by a quarter of a turn, stretched and tapered along the third axis"""
+    points = []
+    for x, y, z in mesh.points:
+        scale, angle = 1.3 - 0.8 * z, 0.5 * math.pi * z
+        c, s = scale * math.cos(angle), scale * math.sin(angle)
+        points.append((c * x - s * y, s * x + c * y, 1.3 * z))
+    return Mesh(points, mesh.faces)
+
+
+# genus 2, made from CGAL's eight; of its vertices both have the numbers
+MADE = {
+    "eight_fine": lambda: refined(read(data("eight"))),
+    "eight_twisted": lambda: twisted(refined(refined(read(data("eight"))))),
+}
+
+
+def map_data(name):
+    if name not in MADE:
+        return data(name)
+    file = os.path.join(folder("made"), name + ".off")
+    if not os.path.exists(file):
+        write(MADE[name](), file)
+    return file
+
+
 def optimize_maps():
     folders = []
     for pair, (source, reference, _, _) in PAIRS.items():
@@ -158,7 +202,7 @@ def optimize_maps():
         for file, name in (("Q.off", source), ("R.off", reference)):
             link = os.path.join(path, file)
             if not os.path.exists(link):
-                os.symlink(os.path.abspath(data(name)), link)
+                os.symlink(os.path.abspath(map_data(name)), link)
         link = os.path.join(path, "landmarks.txt")
         if not os.path.exists(link):
             os.symlink(os.path.join(HERE, "landmarks", pair + ".txt"), link)
@@ -276,23 +320,6 @@ def map_picture():
                       f"optimized: {r['distortion_mean_out']:.2f}"))
 
 
-def refined(mesh):
-    """every triangle in four"""
-    points, at, faces = list(mesh.points), {}, []
-
-    def middle(a, b):
-        key = (min(a, b), max(a, b))
-        if key not in at:
-            at[key] = len(points)
-            points.append(tuple(0.5 * (x + y) for x, y in zip(points[a], points[b])))
-        return at[key]
-
-    for a, b, c in mesh.faces:
-        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-        faces += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    return Mesh(points, faces)
-
-
 def checker(mesh):
     """a colour for every face, by its place in front of the mesh"""
     low = [min(p[i] for p in mesh.points) for i in range(2)]
@@ -375,7 +402,8 @@ def map_gallery():
     for i, (pair, (source, reference, first, second)) in enumerate(PAIRS.items()):
         r = row_of(all_rows, "pair", pair)
         y = picture.height - (size + TEXT) * (i + 1) + TEXT
-        meshes = (read(data(source)), read(os.path.join(WORK, "map", pair + "_start.off")),
+        meshes = (read(map_data(source)),
+                  read(os.path.join(WORK, "map", pair + "_start.off")),
                   read(os.path.join(WORK, "map", pair + "_landmarks.off")))
         texts = (source, f"on {reference}: {r['distortion_mean_in']:.2f}",
                  f"optimized: {r['distortion_mean_out']:.2f}")
