@@ -37,6 +37,7 @@ struct Measure
   bool is_better_if_larger = false;
   double tolerance = 0;                                   // what is no change
   double limit = std::numeric_limits<double>::infinity(); // the mesh cannot be used beyond it
+  bool is_of_defects = false;                             // there should be none
 
   double gain(const Measure& before) const
   {
@@ -64,6 +65,7 @@ public:
   }
   void let_pass(double tolerance) { m_all.back().tolerance = tolerance; }
   void limit(double value) { m_all.back().limit = value; }
+  void of_defects() { m_all.back().is_of_defects = true; }
   const std::vector<Measure>& all() const { return m_all; }
 };
 
@@ -101,6 +103,7 @@ inline void add_quads(Measures& m, const Mesh& mesh, const Mesh& reference, bool
   m.figure("mean_planarity", "  mean", 4, p.mean);
   m.smaller_is_better(Role::condition, "nonconvex_quads", "non-convex quads", 0,
                       double(RCO::number_of_nonconvex_quads(mesh, reference)));
+  m.of_defects();
 }
 
 inline void add_map(Measures& m, const RCO::Map_statistics& map)
@@ -146,6 +149,7 @@ inline void add_orientation(Measures& m, const RCO::Orientation_defects& defects
 {
   m.smaller_is_better(Role::condition, "flipped_faces", "flipped faces", 0,
                       double(defects.number_of_flips));
+  m.of_defects();
   m.smaller_is_better(Role::condition, "folded_edges", "folded edges (beyond 120 degrees)", 0,
                       double(defects.number_of_fold_edges));
 }

@@ -151,7 +151,7 @@ inline void print_json(std::ostream& out, const std::string& error, Outcome outc
       << json_outcome(outcome) << ",\n  \"error\": " << json_text(error) << "\n}" << std::endl;
 }
 
-// "improved, but: flipped faces 0 -> 2"
+// "improved, but: flipped faces 0 -> 2; left: flipped faces 2"
 inline std::string text_of(const Verdict& verdict)
 {
   std::string text = name(verdict.outcome);
@@ -162,6 +162,8 @@ inline std::string text_of(const Verdict& verdict)
              : verdict.outcome == Outcome::not_usable ? "; worse: "
                                                       : ": ") +
             verdict.worse;
+  if(!verdict.left.empty())
+    text += "; left: " + verdict.left;
   return text;
 }
 

@@ -206,6 +206,11 @@ grep -q '^no usable map: largest uncovered region .* (at most 0.001)' out || fai
 expect 13 map flat.off reference.off --initial half.off --json
 json_is outcome 'no usable map'
 json_is 'flaws;0' largest_uncovered_region
+# the face at a corner of the border, whose vertices do not move, stays flipped
+awk 'NR == 47 { corner = $0 } { line[NR] = $0 } END { line[3] = corner; for(i = 1; i <= NR; ++i) print line[i] }' \
+  triangles.off >corner.off
+expect 13 map flat.off reference.off --initial corner.off
+grep -q '^no usable map: .*; left: flipped faces [12] (' out || fail "a flipped face is left: $(cat out)"
 expect 5 map flat.off reference.off --initial reference.off
 expect 3 map flat.off reference.off --landmarks nowhere.txt
 for line in '0' '0 0 0' 'a 0' '441 0' '0 324' '-1 0'; do
@@ -221,6 +226,7 @@ expect 5 map flat.off reference.off --landmarks two.txt
 # ---- the verdict: what got worse is told, and such a mesh alone is not called better
 expect 0 angle triangles.off -o verdict.off
 grep -q '^improved' out || fail "no verdict"
+grep -q 'left:' out && fail "no defect is left: $(cat out)"
 for key in mean_normal_deviation area_turned_above_45 sharp_edges_kept sharp_edges_added volume_change; do
   expect 0 angle triangles.off --number-of-iterations 1 --json
   json_is "before;$key" "$([ "$key" = sharp_edges_kept ] && echo 1 || echo 0)"

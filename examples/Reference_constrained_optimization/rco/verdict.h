@@ -20,6 +20,7 @@ struct Verdict
   Outcome outcome = Outcome::nothing_to_do;
   std::vector<std::string> worse_keys, flaw_keys;
   std::string flaws; // beyond the limits, for people: "mean distortion 4.9e+17 (at most 100)"
+  std::string left;  // defects, for people: "flipped faces 2"
   std::string worse; // for people: "flipped faces 0 -> 2, mean minimum angle 23.8 -> 14.6"
 };
 
@@ -65,6 +66,8 @@ inline Verdict verdict_on(const RCO::Result& result,
       verdict.flaws += (verdict.flaws.empty() ? "" : ", ") + name_of(b) + ' ' + text_of(b.value) +
                        " (at most " + text_of(b.limit) + ')';
     }
+    if(b.is_of_defects && b.value > 0)
+      verdict.left += (verdict.left.empty() ? "" : ", ") + name_of(b) + ' ' + text_of(b.value);
     if(b.role == Role::figure)
       continue;
     const double size = std::isfinite(a.value) ? std::abs(a.value) : 0;
