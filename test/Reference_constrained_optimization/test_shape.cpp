@@ -72,6 +72,31 @@ void test_distances()
   RCO_CHECK_NEAR(largest, drift, 1e-12);
 }
 
+// Where a part of R is far from the mesh, only what is there may be so far.
+void test_uncovered_part()
+{
+  const Shape all = plane_grid(40, 20, 2);
+  Shape half = all;
+  for(Vector_3& p : half.points)
+    p.x() *= 0.5;
+  Located_shape scene(half, all);
+  internal::Shape_bound shape_bound;
+  const double edge = scene.surface.mean_edge_length();
+  shape_bound.initialize<CGAL::Sequential_tag>(scene.state, 0.25 * edge, true,
+                                               internal::Drift_barrier(1));
+  RCO_CHECK_LESS(10 * edge, shape_bound.initial_drift());
+  RCO_CHECK_NEAR(shape_bound.bound(), 3 * edge, 1e-12);
+  int covered = 0, uncovered = 0;
+  for(const internal::Patch_samples::Projected_sample& s :
+      shape_bound.gather(scene.state, scene.whole_patch()).projected_samples)
+  {
+    (s.distance < 3 * edge ? covered : uncovered) += 1;
+    RCO_CHECK_LESS_EQUAL(s.bound, (std::max)(3 * edge, s.distance) * (1 + 1e-12));
+    RCO_CHECK_LESS_EQUAL(s.distance, s.bound * internal::Drift_barrier::limit_factor * (1 + 1e-12));
+  }
+  RCO_CHECK(covered > 100 && uncovered > 100);
+}
+
 // What a patch gathered is stored again, and can be restored.
 void test_store()
 {
@@ -132,6 +157,7 @@ void test_normal_deviation()
 int main()
 {
   run_test("distances", test_distances);
+  run_test("uncovered part", test_uncovered_part);
   run_test("store", test_store);
   run_test("normal deviation", test_normal_deviation);
   return report();

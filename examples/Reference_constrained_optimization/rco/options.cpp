@@ -218,7 +218,7 @@ class Option_reader
     add("drift-bound", text(m_drift_bound, "B"),
         "how far mesh and reference may be apart: a length in the units of the files, a number of "
         "mean edges of the reference if an e follows (0.5e), or inf; default: 0.25e, or what the "
-        "input has, and less where the reference is finer and on mechanical parts");
+        "input has, up to 3e, and less where the reference is finer and on mechanical parts");
     add("number-of-iterations", count(m_whole.number_of_iterations), "at most; default: 100");
     add("maximum-running-time", number(o.maximum_running_time), "seconds; default: no limit");
     add("energy-tolerance", number(o.energy_tolerance),

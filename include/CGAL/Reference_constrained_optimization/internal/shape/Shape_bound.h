@@ -33,7 +33,8 @@ class Shape_bound
 public:
   bool is_enabled() const { return !m_first.empty(); }
 
-  // The bound must be finite. With `may_increase` it is increased to allow the distances of the input.
+  // The bound must be finite. With `may_increase` it is increased to allow the distances of the input, up to three
+  // mean edges of R: what is closer than that is covered, and stays so.
   template <typename ConcurrencyTag>
   void initialize(const Optimization_state& state,
                   double bound,
@@ -47,14 +48,19 @@ public:
     const double from_reference = *std::max_element(m_distance.begin(), m_distance.end());
     const double from_mesh = *std::max_element(distances.begin(), distances.end());
     m_initial_drift = (std::max)(from_reference, from_mesh);
-    m_bound =
-      may_increase ? (std::max)(bound, m_initial_drift / Drift_barrier::limit_factor) : bound;
+    m_bound = bound;
     if(may_increase)
+    {
+      const double largest_number_of_edges = 3;
+      m_bound =
+        (std::max)(bound, (std::min)(m_initial_drift / Drift_barrier::limit_factor,
+                                     largest_number_of_edges * state.reference.mean_edge_length()));
       compute_local_bounds(state);
+    }
     const auto allowed = [](double bound, double distance) {
       return (std::max)(bound, distance / Drift_barrier::limit_factor);
     };
-    if(!may_increase && from_reference > m_bound)
+    if(m_reference_sample_bounds.empty() && from_reference > m_bound)
       m_reference_sample_bounds.assign(m_distance.size(), m_bound);
     for(std::size_t r = 0; r < m_reference_sample_bounds.size(); ++r)
       m_reference_sample_bounds[r] = allowed(m_reference_sample_bounds[r], m_distance[r]);
