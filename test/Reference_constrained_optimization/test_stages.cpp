@@ -427,7 +427,7 @@ void test_latency()
 #endif
   const Mesh reference = mesh_of(torus(3 * columns / 4, 3 * rows / 4));
   const Shape rough = scrambled(torus(columns, rows), 0.1, 3, onto_torus(1, 0.4));
-  const int attempts = 3; // others may be busy
+  const int attempts = 5; // others may be busy
   double gap = 0, overtime = 0, rest = 0;
   for(int attempt = 0; attempt < attempts; ++attempt)
   {
