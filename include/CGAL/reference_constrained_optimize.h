@@ -125,9 +125,9 @@ namespace CGAL {
  *                           infinity turns the bound off. Section \ref rco_drift tells how it is enforced}
  *     \cgalParamType{`double`}
  *     \cgalParamDefault{a quarter of the reference's mean edge length, or the distance of the input if that
- *                       is larger, but three mean edges at most (`Result::drift_bound` holds it), and less where the reference has
- *                       smaller faces, and on mechanical parts; infinity if `use_on_surface_steps` is
- *                       `false`}
+ *                       is larger, but three mean edges at most (`Result::drift_bound` holds it), and less
+ *                       where the reference has smaller faces, and on mechanical parts; infinity if
+ *                       `use_on_surface_steps` is `false`}
  *   \cgalParamNEnd
  *   \cgalParamNBegin{energy_tolerance}
  *     \cgalParamDescription{the relative decrease of the energy below which the optimization stops}

@@ -179,7 +179,7 @@ def twisted(mesh):
     return Mesh(points, mesh.faces)
 
 
-# genus 2, made from CGAL's eight; of its vertices both have the numbers
+# genus 2, made from CGAL's eight, whose vertices keep their numbers
 MADE = {
     "eight_fine": lambda: refined(read(data("eight"))),
     "eight_twisted": lambda: twisted(refined(refined(read(data("eight"))))),

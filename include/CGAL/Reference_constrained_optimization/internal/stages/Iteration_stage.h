@@ -108,7 +108,7 @@ private:
     Saved_state start(m_state, m_visits.round_solver.shape_bound());
     start.add(all);
     const bool complete = visit_active_unless_interrupted();
-    if(int(m_state.intersecting_faces().size()) <= number.largest)
+    if(int(intersecting_faces(m_state.mesh, m_state.vertices).size()) <= number.largest)
       return complete;
     start.restore();
     m_watches_intersections = true;

@@ -11,6 +11,7 @@
 #include <CGAL/Reference_constrained_optimization/internal/objective/Stencil_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Polyline_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/reference/Reference_surface.h>
+#include <CGAL/Reference_constrained_optimization/internal/state/Located_vertex.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
 
 #include <algorithm>
@@ -25,30 +26,14 @@ namespace CGAL {
 namespace Reference_constrained_optimization {
 namespace internal {
 
-// A vertex with its point of R and R's normal there.
-struct Located_vertex
+// the pairs of faces that intersect, wherever they are
+inline std::vector<std::pair<int, int>>
+intersecting_faces(const Indexed_mesh& mesh, const std::vector<Located_vertex>& vertices)
 {
-  Surface_point on_reference;
-  Vector_3 position = Vector_3::Zero(); // differs from on_reference for constrained vertices off R
-  Vector_3 normal = Vector_3::Zero();
-  Polyline_point on_line; // of vertices that slide
-};
-
-// Moves a vertex to its point of a line; false if there is no point of R on the same sheet.
-inline bool locate_on_line(const Polyline_set& lines,
-                           const Reference_surface& reference,
-                           Located_vertex& vertex)
-{
-  const int face = lines[vertex.on_line.segment].face;
-  const Surface_point projection = reference.local_closest(
-    lines.position(vertex.on_line), face >= 0 ? face : vertex.on_reference.face);
-  const Vector_3 normal = reference.normal(projection);
-  if(!(normal.dot(vertex.normal) > 0))
-    return false;
-  vertex.on_reference = projection;
-  vertex.position = projection.position;
-  vertex.normal = normal;
-  return true;
+  std::vector<Vector_3> points;
+  for(const Located_vertex& v : vertices)
+    points.push_back(v.position);
+  return self_intersections(mesh, points);
 }
 
 // A number with an upper bound: that of the input, unless more are allowed.
@@ -149,7 +134,7 @@ struct Optimization_state
   // Tests faces where faces intersect now, too, and counts all pairs again.
   void watch_intersections()
   {
-    const std::vector<std::pair<int, int>> pairs = intersecting_faces();
+    const std::vector<std::pair<int, int>> pairs = intersecting_faces(mesh, vertices);
     counts.intersections.now = int(pairs.size());
     if(pairs.empty())
       return;
@@ -160,14 +145,6 @@ struct Optimization_state
         for(int c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
           is_near[vertices[mesh.corner_vertex[c]].on_reference.face] = 1;
     set_near_sheets(std::move(is_near));
-  }
-  // all pairs, wherever they are
-  std::vector<std::pair<int, int>> intersecting_faces() const
-  {
-    std::vector<Vector_3> points;
-    for(const Located_vertex& v : vertices)
-      points.push_back(v.position);
-    return self_intersections(mesh, points);
   }
   // after vertices of these faces have moved
   void update_near_sheets(const std::vector<int>& moved)

@@ -6,7 +6,6 @@
 #define CGAL_REFERENCE_CONSTRAINED_OPTIMIZATION_INTERNAL_WRITING_DEFECT_REPAIR_H
 
 #include <CGAL/Reference_constrained_optimization/internal/mesh/corner_angle.h>
-#include <CGAL/Reference_constrained_optimization/internal/mesh/self_intersections.h>
 #include <CGAL/Reference_constrained_optimization/internal/selection/active_set.h>
 #include <CGAL/Reference_constrained_optimization/internal/state/Optimization_state.h>
 #include <CGAL/Reference_constrained_optimization/internal/support/for_each_block.h>
@@ -78,10 +77,7 @@ Output_defects find_output_defects(const Optimization_state& state,
     defects.number += std::size_t(folded);
   for(const char crease : defects.is_crease)
     defects.number_of_creases += std::size_t(crease);
-  std::vector<Vector_3> points;
-  for(const Located_vertex& v : vertices)
-    points.push_back(v.position);
-  defects.intersections = self_intersections(mesh, points);
+  defects.intersections = intersecting_faces(mesh, vertices);
   return defects;
 }
 
